@@ -1,0 +1,40 @@
+#include "graphdrl/base/error.h"
+
+#include <fmt/format.h>
+
+namespace graphdrl {
+namespace {
+
+// The part on one line: a path or a name may hold line breaks and terminal codes.
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      result += fmt::format("\\x{:02x}", byte);
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string one_line(const ErrorParts& parts) {
+  std::string line;
+  if (!parts.where.empty()) line += parts.where + ": ";
+  line += parts.what;
+  if (!parts.expected.empty()) line += ": expected " + parts.expected;
+  if (!parts.got.empty()) line += (parts.expected.empty() ? ": got " : ", got ") + parts.got;
+  return escaped(line);
+}
+
+}  // namespace
+
+Error::Error(const ErrorParts& parts) : std::runtime_error(one_line(parts)) {}
+
+std::string in_quotes(std::string_view text, std::size_t max_length) {
+  const bool cut = text.size() > max_length;
+  return fmt::format("'{}{}'", escaped(text.substr(0, max_length)), cut ? "…" : "");
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,27 @@
+// The one exception type for whatever a caller can get wrong: files, options, arguments.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace graphdrl {
+
+// The parts of one line that tells a user what to change. `expected`, `got` and `where` may be empty.
+struct ErrorParts {
+  std::string what;
+  std::string expected = {};
+  std::string got = {};
+  std::string where = {};  // a file with line and column, an option, a key
+};
+
+// what() is a single printable line: "<where>: <what>: expected <expected>, got <got>".
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const ErrorParts& parts);
+};
+
+// `text` in quotes, unprintable bytes escaped, cut to `max_length` characters.
+std::string in_quotes(std::string_view text, std::size_t max_length = 60);
+
+}  // namespace graphdrl

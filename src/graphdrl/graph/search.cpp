@@ -1,0 +1,27 @@
+#include "graphdrl/graph/search.h"
+
+namespace graphdrl {
+
+int count_components(const Graph& graph, const std::vector<bool>& blocked) {
+  std::vector<bool> seen = blocked;
+  int components = 0;
+  std::vector<NodeId> stack;
+  for (NodeId root = 0; root < graph.node_count(); ++root) {
+    if (seen[root]) continue;
+    ++components;
+    seen[root] = true;
+    stack.push_back(root);
+    while (!stack.empty()) {
+      const NodeId node = stack.back();
+      stack.pop_back();
+      for (const NodeId next : graph.neighbours(node)) {
+        if (seen[next]) continue;
+        seen[next] = true;
+        stack.push_back(next);
+      }
+    }
+  }
+  return components;
+}
+
+}  // namespace graphdrl

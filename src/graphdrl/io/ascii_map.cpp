@@ -1,0 +1,71 @@
+#include "graphdrl/io/ascii_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+namespace {
+
+std::vector<std::string_view> split_rows(std::string_view text) {
+  std::vector<std::string_view> rows;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    std::string_view row = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (row.ends_with('\r')) row.remove_suffix(1);
+    rows.push_back(row);
+  }
+  while (!rows.empty() && rows.back().empty()) rows.pop_back();
+  return rows;
+}
+
+}  // namespace
+
+GridMap parse_ascii_map(std::string_view text, const std::string& source) {
+  const std::vector<std::string_view> rows = split_rows(text);
+  if (rows.empty()) throw Error({.what = "the map has no rows", .where = source});
+  const std::size_t cols = rows.front().size();
+  if (rows.size() * std::max<std::size_t>(cols, 1) > std::numeric_limits<NodeId>::max()) {
+    throw Error({.what = "the map has too many cells for 32-bit node ids", .where = source});
+  }
+  GridMap map{.rows = static_cast<int>(rows.size()), .cols = static_cast<int>(cols), .blocked = {}};
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t col = 0; col < rows[row].size(); ++col) {
+      const char c = rows[row][col];
+      if (c != '.' && c != '#') {
+        throw Error({.what = "strange character in the map",
+                     .expected = "'.' (free) or '#' (blocked)",
+                     .got = in_quotes({&c, 1}),
+                     .where = fmt::format("{}:{}:{}", source, row + 1, col + 1)});
+      }
+      map.blocked.push_back(c == '#');
+    }
+    if (rows[row].size() != cols) {
+      throw Error({.what = "rows of unequal length",
+                   .expected = fmt::format("{} cells, as in the first row", cols),
+                   .got = fmt::format("{}", rows[row].size()),
+                   .where = fmt::format("{}:{}", source, row + 1)});
+    }
+  }
+  if (std::find(map.blocked.begin(), map.blocked.end(), false) == map.blocked.end()) {
+    throw Error(
+        {.what = "the map has no valid node", .expected = "at least one '.'", .got = "only '#'", .where = source});
+  }
+  return map;
+}
+
+std::string format_ascii_map(const GridMap& map) {
+  std::string text;
+  for (int row = 0; row < map.rows; ++row) {
+    for (int col = 0; col < map.cols; ++col) text += map.blocked[map.node({row, col})] ? '#' : '.';
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace graphdrl
