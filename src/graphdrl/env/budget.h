@@ -1,0 +1,26 @@
+// Budgets as users give them: a number of steps, or a multiple of the number of valid nodes.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "graphdrl/env/world.h"
+
+namespace graphdrl {
+
+// "25", or "1.1x": floor(1.1 · n + 1e-9) steps in a world of n valid nodes.
+class Budget {
+ public:
+  // Throws Error on anything but a number from 0 up, with or without the x.
+  static Budget parse(std::string_view text);
+
+  double steps_in(const World& world) const;
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  double value_ = 0;
+  bool relative_ = false;
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,81 @@
+// The decision process of the paper, section 1: one walk through a world under a budget.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "graphdrl/env/observation.h"
+#include "graphdrl/env/world.h"
+
+namespace graphdrl {
+
+enum class RewardKind {
+  kVisitPenalty,  // [paper, eq. 3]
+  kCoverageGain,  // [paper, eq. 2]
+};
+
+// The defaults are the paper's.
+struct EpisodeOptions {
+  double budget = 25;  // steps; a move costs one
+  ActionSpace action_space = ActionSpace::kDirections;
+  RewardKind reward = RewardKind::kVisitPenalty;
+  // Differs from the paper: its author's code ends an episode at full coverage, with a bonus …
+  bool end_at_full_coverage = false;
+  // … and punishes a blocked move by a further 0.1 per visit of the node before it.
+  bool punish_blocked_by_visits = false;
+};
+
+inline constexpr double kFirstVisitReward = 0.1;   // eq. 3
+inline constexpr double kRevisitReward = -0.1;     // eq. 3, times the visits before this one
+inline constexpr double kBlockedReward = -0.5;     // eq. 3
+inline constexpr double kFullCoverageBonus = 1.0;  // the author's code; with end_at_full_coverage
+
+struct StepResult {
+  double reward;
+  bool blocked;      // the move led into an obstacle or off the map
+  bool first_visit;  // the node entered was unvisited
+};
+
+// One walk. Not thread safe; the world must outlive it. step() is O(1) and allocates nothing but the growing walk.
+class Episode {
+ public:
+  // Throws Error on a budget below 0 or not a number, and on directions in a world that is no grid.
+  Episode(const World& world, const EpisodeOptions& options);
+
+  // Begins a new walk. Throws Error on a start that is blocked or not in the world.
+  void reset(NodeId start);
+
+  // REQUIRES: !done(), 0 <= action < observation().action_count().
+  StepResult step(int action);
+
+  // The budget is spent, or the state is terminal, or there is nowhere to go.
+  bool done() const;
+
+  // Reached full coverage with end_at_full_coverage: nothing follows. A spent budget is no terminal state, only a
+  // truncation: eq. 5 bootstraps there.
+  bool terminal() const { return options_.end_at_full_coverage && all_visited(); }
+
+  const World& world() const { return *world_; }
+  Observation observation() const;
+  NodeId position() const { return position_; }
+  const std::vector<std::uint32_t>& visits() const { return visits_; }
+  const std::vector<NodeId>& walk() const { return walk_; }
+  int visited_count() const { return visited_count_; }
+  double coverage() const { return static_cast<double>(visited_count_) / world_->valid_count(); }  // eq. 1
+  double spent() const { return spent_; }                                                          // steps
+
+ private:
+  bool all_visited() const { return visited_count_ == world_->valid_count(); }
+  double reward_of(bool blocked, std::uint32_t visits_before) const;
+
+  const World* world_;
+  EpisodeOptions options_;
+  NodeId position_ = kNoNode;
+  std::vector<std::uint32_t> visits_;  // [N]
+  std::vector<NodeId> walk_;
+  int visited_count_ = 0;
+  double spent_ = 0;
+};
+
+}  // namespace graphdrl

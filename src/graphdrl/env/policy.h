@@ -1,0 +1,20 @@
+// The one interface of random walks, searches and trained networks.
+#pragma once
+
+#include <span>
+
+#include "graphdrl/env/observation.h"
+
+namespace graphdrl {
+
+// Chooses the next move of many episodes at once. May keep random numbers and caches, so calls are not thread safe.
+class Policy {
+ public:
+  virtual ~Policy() = default;
+
+  // Writes a move for each observation: an action of its action space, or kStop.
+  // REQUIRES: actions is as long as observations; no observed episode is done.
+  virtual void act(std::span<const Observation> observations, std::span<int> actions) = 0;
+};
+
+}  // namespace graphdrl
