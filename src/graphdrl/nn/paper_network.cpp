@@ -1,0 +1,233 @@
+#include "graphdrl/nn/paper_network.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/gemm.h"
+#include "graphdrl/nn/vector_math.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr int kPooledWidth = kConvShapes.back().width;
+constexpr const char* kDescriptionKey = "network";
+constexpr const char* kTrainingKey = "training";
+
+std::vector<TensorSpec> make_specs() {
+  std::vector<TensorSpec> specs;
+  const auto add = [&](const std::string& name, Shape shape, bool trainable) {
+    std::size_t size = 1;
+    for (const std::int64_t extent : shape) size *= static_cast<std::size_t>(extent);
+    const std::size_t offset = specs.empty() ? 0 : specs.back().offset + specs.back().size;
+    specs.push_back({name, std::move(shape), trainable, offset, size});
+  };
+  const auto conv = [](std::size_t layer) { return fmt::format("conv{}", layer + 1); };
+  for (std::size_t layer = 0; layer < kConvShapes.size(); ++layer) {
+    const auto [inputs, width, steps] = kConvShapes[layer];
+    add(conv(layer) + ".weight", {steps, width, width}, true);
+    add(conv(layer) + ".rnn.weight_ih", {3 * width, width}, true);
+    add(conv(layer) + ".rnn.weight_hh", {3 * width, width}, true);
+    add(conv(layer) + ".rnn.bias_ih", {3 * width}, true);
+    add(conv(layer) + ".rnn.bias_hh", {3 * width}, true);
+    if (layer + 1 == kConvShapes.size()) continue;  // the last one is pooled, not normalised
+    add(fmt::format("bn{}.weight", layer + 1), {width}, true);
+    add(fmt::format("bn{}.bias", layer + 1), {width}, true);
+  }
+  add("fc1.weight", {kHiddenWidth, kPooledWidth}, true);
+  add("fc1.bias", {kHiddenWidth}, true);
+  add("fc2.weight", {kActionCount, kHiddenWidth}, true);
+  add("fc2.bias", {kActionCount}, true);
+  for (std::size_t layer = 0; layer + 1 < kConvShapes.size(); ++layer) {
+    add(fmt::format("bn{}.running_mean", layer + 1), {kConvShapes[layer].width}, false);
+    add(fmt::format("bn{}.running_var", layer + 1), {kConvShapes[layer].width}, false);
+  }
+  return specs;
+}
+
+const TensorSpec& find_spec(const std::string& name) {
+  const auto& specs = PaperParameters::specs();
+  return *std::find_if(specs.begin(), specs.end(), [&](const TensorSpec& spec) { return spec.name == name; });
+}
+
+// Half the width of the uniform distribution a tensor starts from.
+float initial_bound(const TensorSpec& spec) {
+  const float fan = spec.name.starts_with("conv")  ? static_cast<float>(kConvShapes[spec.name[4] - '1'].width)
+                    : spec.name.starts_with("fc1") ? static_cast<float>(kPooledWidth)
+                                                   : static_cast<float>(kHiddenWidth);
+  return 1.0f / std::sqrt(fan);
+}
+
+// Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
+nlohmann::json network_description() {
+  nlohmann::json layers = nlohmann::json::array();
+  for (const auto [inputs, width, steps] : kConvShapes) {
+    layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
+  }
+  layers.push_back({{"type", "linear"}, {"inputs", kPooledWidth}, {"width", kHiddenWidth}});
+  layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
+  return {{"kind", "paper"},  {"features", kFeatureNames}, {"actions", kDirectionNames},
+          {"layers", layers}, {"activation", "elu"},       {"batch_norm", {{"epsilon", 1e-5}, {"momentum", 0.1}}},
+          {"pooling", "sum"}};
+}
+
+}  // namespace
+
+PaperParameters::PaperParameters() : values_(specs().back().offset + specs().back().size) {}
+
+PaperParameters::PaperParameters(Rng& rng) : PaperParameters() {
+  for (const TensorSpec& spec : specs()) {
+    float* const values = values_.data() + spec.offset;
+    if (spec.name.starts_with("bn")) {
+      const bool one = spec.name.ends_with(".weight") || spec.name.ends_with(".running_var");
+      std::fill_n(values, spec.size, one ? 1.0f : 0.0f);
+      continue;
+    }
+    const float bound = initial_bound(spec);
+    for (std::size_t i = 0; i < spec.size; ++i) values[i] = bound * static_cast<float>(2 * rng.uniform() - 1);
+  }
+}
+
+const std::vector<TensorSpec>& PaperParameters::specs() {
+  static const std::vector<TensorSpec> specs = make_specs();
+  return specs;
+}
+
+std::size_t PaperParameters::trainable_count() {
+  std::size_t count = 0;
+  for (const TensorSpec& spec : specs()) count += spec.trainable ? spec.size : 0;
+  return count;
+}
+
+float* PaperParameters::tensor(const std::string& name) {
+  return values_.data() + find_spec(name).offset;
+}
+
+const float* PaperParameters::tensor(const std::string& name) const {
+  return values_.data() + find_spec(name).offset;
+}
+
+GatedGraphConvTensors<float> PaperParameters::conv(int layer) {
+  const std::string name = fmt::format("conv{}", layer);
+  return {.weight = tensor(name + ".weight"),
+          .w_ih = tensor(name + ".rnn.weight_ih"),
+          .w_hh = tensor(name + ".rnn.weight_hh"),
+          .b_ih = tensor(name + ".rnn.bias_ih"),
+          .b_hh = tensor(name + ".rnn.bias_hh")};
+}
+
+GatedGraphConvTensors<const float> PaperParameters::conv(int layer) const {
+  const auto views = const_cast<PaperParameters*>(this)->conv(layer);
+  return {.weight = views.weight, .w_ih = views.w_ih, .w_hh = views.w_hh, .b_ih = views.b_ih, .b_hh = views.b_hh};
+}
+
+std::vector<TensorView> PaperParameters::views(const std::string& prefix) const {
+  std::vector<TensorView> views;
+  for (const TensorSpec& spec : specs()) {
+    views.emplace_back(prefix + spec.name, spec.shape, std::span(values_).subspan(spec.offset, spec.size));
+  }
+  return views;
+}
+
+PaperParameters PaperParameters::from_file(const Safetensors& file, const std::string& prefix) {
+  PaperParameters parameters;
+  for (const TensorSpec& spec : specs()) {
+    const std::vector<float> values = file.get<float>(prefix + spec.name, spec.shape);
+    std::copy(values.begin(), values.end(), parameters.values_.begin() + static_cast<std::ptrdiff_t>(spec.offset));
+  }
+  return parameters;
+}
+
+void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters, const Metadata& training) {
+  Metadata metadata;
+  metadata[kDescriptionKey] = network_description().dump();
+  if (!training.empty()) metadata[kTrainingKey] = nlohmann::json(training).dump();
+  write_safetensors(path, parameters.views(), metadata);
+}
+
+PaperParameters read_policy_file(const std::filesystem::path& path) {
+  const Safetensors file = Safetensors::read(path);
+  const auto text = file.metadata().find(kDescriptionKey);
+  if (text == file.metadata().end()) {
+    throw Error({.what = "not a policy file", .expected = "a network's description", .where = path.string()});
+  }
+  const auto found = nlohmann::json::parse(text->second, nullptr, /*allow_exceptions=*/false);
+  const auto expected = network_description();
+  for (const auto& [key, value] : expected.items()) {
+    if (found.is_object() && found.contains(key) && found[key] == value) continue;
+    const std::string got = found.is_object() && found.contains(key) ? found[key].dump() : "nothing";
+    throw Error({.what = fmt::format("policy of another network: {} differs", in_quotes(key)),
+                 .expected = value.dump(),
+                 .got = in_quotes(got, 200),
+                 .where = path.string()});
+  }
+  const std::size_t tensors = PaperParameters::specs().size();
+  if (file.entries().size() != tensors) {
+    throw Error({.what = "policy of another network",
+                 .expected = fmt::format("{} tensors", tensors),
+                 .got = fmt::format("{}", file.entries().size()),
+                 .where = path.string()});
+  }
+  return PaperParameters::from_file(file);
+}
+
+PaperNetwork::PaperNetwork() {
+  for (const GatedGraphConvShape& shape : kConvShapes) convs_.emplace_back(shape);
+}
+
+void PaperNetwork::set_parameters(const PaperParameters& parameters) {
+  parameters_ = &parameters;
+  for (int layer = 1; layer <= 3; ++layer) conv(layer).set_weights(parameters.conv(layer));
+}
+
+void PaperNetwork::normalise(int layer, std::span<float> x) const {
+  const std::string name = fmt::format("bn{}", layer);
+  const float* const weight = parameters_->tensor(name + ".weight");
+  const float* const bias = parameters_->tensor(name + ".bias");
+  const float* const mean = parameters_->tensor(name + ".running_mean");
+  const float* const variance = parameters_->tensor(name + ".running_var");
+  const int width = kConvShapes[layer - 1].width;
+  std::array<float, kPooledWidth> scale{};
+  for (int i = 0; i < width; ++i) scale[i] = weight[i] / std::sqrt(variance[i] + kBatchNormEpsilon);
+  for (float* row = x.data(); row != x.data() + x.size(); row += width) {
+    for (int i = 0; i < width; ++i) row[i] = (row[i] - mean[i]) * scale[i] + bias[i];
+  }
+}
+
+void PaperNetwork::q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) {
+  const int nodes = batch.node_count();
+  const int graphs = batch.graph_count();
+  const float* input = x.data();
+  for (int layer = 1; layer <= 3; ++layer) {
+    std::vector<float>& output = outputs_[layer - 1];
+    output.resize(static_cast<std::size_t>(nodes) * kConvShapes[layer - 1].width);
+    conv(layer).forward(batch, input, output.data(), /*keep=*/false);
+    elu(output.data(), output.size());
+    if (layer < 3) normalise(layer, output);
+    input = output.data();
+  }
+  pooled_.assign(static_cast<std::size_t>(graphs) * kPooledWidth, 0.0f);
+  for (int g = 0; g < graphs; ++g) {
+    float* const sum = pooled_.data() + static_cast<std::ptrdiff_t>(g) * kPooledWidth;
+    for (int node = batch.first_node(g); node < batch.first_node(g + 1); ++node) {
+      const float* const row = input + static_cast<std::ptrdiff_t>(node) * kPooledWidth;
+      for (int i = 0; i < kPooledWidth; ++i) sum[i] += row[i];
+    }
+  }
+  hidden_.resize(static_cast<std::size_t>(graphs) * kHiddenWidth);
+  const auto linear = [&](const std::string& name, int inputs, int width, const float* in, float* out) {
+    const float* const bias = parameters_->tensor(name + ".bias");
+    for (int g = 0; g < graphs; ++g) std::copy_n(bias, width, out + static_cast<std::ptrdiff_t>(g) * width);
+    gemm(Op::kNone, Op::kTranspose, graphs, width, inputs, in, inputs, parameters_->tensor(name + ".weight"), inputs,
+         1.0f, out, width);
+  };
+  linear("fc1", kPooledWidth, kHiddenWidth, pooled_.data(), hidden_.data());
+  elu(hidden_.data(), hidden_.size());
+  linear("fc2", kHiddenWidth, kActionCount, hidden_.data(), q.data());
+}
+
+}  // namespace graphdrl

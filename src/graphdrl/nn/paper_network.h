@@ -1,0 +1,94 @@
+// The Q-network of the paper, Table 1, without any tensor library: its parameters, its inference, its policy files.
+//
+// Two facts that differ from the paper's text. Table 1 prints 26,598 parameters for its third row; the formula that
+// gives its first and fifth, L·D² + 6·D² + 6·D, gives 41,344 there, and so does this network. The text says the output
+// lies in [0, 1]; eq. 3 makes values negative, so the last layer is linear.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/io/safetensors.h"
+#include "graphdrl/nn/gated_graph_conv.h"
+#include "graphdrl/nn/graph_batch.h"
+
+namespace graphdrl {
+
+inline constexpr std::array<GatedGraphConvShape, 3> kConvShapes = {{{7, 7, 4}, {7, 64, 4}, {64, 128, 4}}};
+inline constexpr int kHiddenWidth = 256;
+inline constexpr int kActionCount = 4;  // left, up, right, down
+inline constexpr float kBatchNormEpsilon = 1e-5f;
+inline constexpr float kBatchNormMomentum = 0.1f;
+
+// One tensor of the network, and where it stands in the flat buffer of all of them.
+struct TensorSpec {
+  std::string name;  // PyTorch's: "conv1.rnn.weight_ih"
+  Shape shape;
+  bool trainable;  // batch norm's running statistics are not
+  std::size_t offset;
+  std::size_t size;
+};
+
+// All tensors of the network in one flat buffer, the trainable ones first, so that an optimiser can take them as one.
+class PaperParameters {
+ public:
+  // Initialised as PyTorch and PyTorch Geometric do: uniform within ±1/√fan-in for Linear, ±1/√D for a gated
+  // convolution; batch norm 1 and 0, its running statistics 0 and 1.
+  explicit PaperParameters(Rng& rng);
+
+  // All values 0: a place for gradients, or to be filled.
+  PaperParameters();
+
+  static const std::vector<TensorSpec>& specs();  // in order of offset
+  static std::size_t trainable_count();           // 240,678
+
+  std::span<float> values() { return values_; }
+  std::span<const float> values() const { return values_; }
+  float* tensor(const std::string& name);
+  const float* tensor(const std::string& name) const;
+  GatedGraphConvTensors<float> conv(int layer);  // layer: 1 to 3
+  GatedGraphConvTensors<const float> conv(int layer) const;
+
+  // The tensors under PyTorch's names, with `prefix` before each; for files. The values stay this object's.
+  std::vector<TensorView> views(const std::string& prefix = "") const;
+  static PaperParameters from_file(const Safetensors& file, const std::string& prefix = "");
+
+ private:
+  std::vector<float> values_;
+};
+
+// A policy file: the parameters and, as metadata, the network's full description. Throws Error.
+void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters, const Metadata& training);
+PaperParameters read_policy_file(const std::filesystem::path& path);
+
+// Computes Q-values as PyTorch does in eval mode: batch norm by its running statistics, no dropout. Keeps its working
+// memory; not thread safe, though it spreads its work over parallel_for.
+class PaperNetwork {
+ public:
+  PaperNetwork();
+
+  // Takes the parameters for all later calls; they must stay until the next call.
+  void set_parameters(const PaperParameters& parameters);
+
+  // x: [N, F] features, q: [B, A].
+  void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q);
+
+  // Layer 1 to 3, with its weights set; a learner runs it forward and backward by itself.
+  GatedGraphConv<float>& conv(int layer) { return convs_[layer - 1]; }
+
+ private:
+  void normalise(int layer, std::span<float> x) const;
+
+  const PaperParameters* parameters_ = nullptr;
+  std::vector<GatedGraphConv<float>> convs_;
+  std::array<std::vector<float>, 3> outputs_;  // [N, D] each
+  std::vector<float> pooled_;                  // [B, 128]
+  std::vector<float> hidden_;                  // [B, 256]
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,129 @@
+#include "graphdrl/nn/vector_math.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+// One clone of a function per instruction set, the best one picked when the program starts. Sanitizers run before that
+// choice can be made.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define GRAPHDRL_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define GRAPHDRL_VECTOR_CLONES
+#endif
+#define GRAPHDRL_INLINE [[gnu::always_inline]] inline
+
+namespace graphdrl {
+namespace {
+
+GRAPHDRL_INLINE double exponential(double x) {
+  return std::exp(x);
+}
+
+// exp(x) = 2^k exp(f), k = round(x / ln 2), |f| <= ln(2) / 2, with a polynomial of degree 6 for exp(f); relative error
+// below 3e-7. Written without branches or calls, so that loops over it become vector code.
+GRAPHDRL_INLINE float exponential(float x) {
+  constexpr float kLog2E = 1.44269504f;
+  constexpr float kLn2High = 0.693359375f;  // the two parts of ln 2: the first multiplies k exactly
+  constexpr float kLn2Low = -2.12194440e-4f;
+  constexpr float kRound = 12582912.0f;  // 1.5 · 2^23: adding it leaves the nearest integer in the low bits
+  x = x < -87.0f ? -87.0f : x;
+  x = x > 88.0f ? 88.0f : x;
+  const float shifted = x * kLog2E + kRound;
+  const float k = shifted - kRound;
+  const float f = (x - k * kLn2High) - k * kLn2Low;
+  float p = 1.0f / 720;  // Taylor's coefficients 1 / i!
+  p = p * f + 1.0f / 120;
+  p = p * f + 1.0f / 24;
+  p = p * f + 1.0f / 6;
+  p = p * f + 0.5f;
+  p = p * f + 1.0f;
+  p = p * f + 1.0f;
+  const std::int32_t bits = std::bit_cast<std::int32_t>(p) + (std::bit_cast<std::int32_t>(shifted) << 23);
+  return std::bit_cast<float>(bits);
+}
+
+template <typename T>
+GRAPHDRL_INLINE T sigmoid(T x) {
+  return T{1} / (T{1} + exponential(-x));
+}
+
+template <typename T>
+GRAPHDRL_INLINE T hyperbolic_tangent(T x) {
+  return T{1} - T{2} / (T{1} + exponential(T{2} * x));
+}
+
+template <typename T>
+GRAPHDRL_INLINE void gru_forward_rows(int rows, int width, T* gates, const T* h, T* h_next) {
+  for (int row = 0; row < rows; ++row) {
+    T* const n = gates + static_cast<std::ptrdiff_t>(row) * 4 * width;
+    T* const r = n + width;
+    T* const z = r + width;
+    const T* const hn = z + width;
+    const T* const state = h + static_cast<std::ptrdiff_t>(row) * width;
+    T* const next = h_next + static_cast<std::ptrdiff_t>(row) * width;
+#pragma omp simd
+    for (int i = 0; i < width; ++i) {
+      const T reset = sigmoid(r[i]);
+      const T update = sigmoid(z[i]);
+      const T candidate = hyperbolic_tangent(n[i] + reset * hn[i]);
+      n[i] = candidate;
+      r[i] = reset;
+      z[i] = update;
+      next[i] = (T{1} - update) * candidate + update * state[i];
+    }
+  }
+}
+
+template <typename T>
+GRAPHDRL_INLINE void gru_backward_rows(int rows, int width, T* gates, const T* h, T* grad) {
+  for (int row = 0; row < rows; ++row) {
+    T* const n = gates + static_cast<std::ptrdiff_t>(row) * 4 * width;
+    T* const r = n + width;
+    T* const z = r + width;
+    T* const hn = z + width;
+    const T* const state = h + static_cast<std::ptrdiff_t>(row) * width;
+    T* const by_next = grad + static_cast<std::ptrdiff_t>(row) * width;
+#pragma omp simd
+    for (int i = 0; i < width; ++i) {
+      const T g = by_next[i];
+      const T by_n = g * (T{1} - z[i]) * (T{1} - n[i] * n[i]);
+      const T by_z = g * (state[i] - n[i]) * z[i] * (T{1} - z[i]);
+      by_next[i] = g * z[i];
+      const T reset = r[i];
+      r[i] = by_n * hn[i] * reset * (T{1} - reset);
+      hn[i] = by_n * reset;
+      n[i] = by_n;
+      z[i] = by_z;
+    }
+  }
+}
+
+}  // namespace
+
+GRAPHDRL_VECTOR_CLONES
+void gru_forward(int rows, int width, float* gates, const float* h, float* h_next) {
+  gru_forward_rows(rows, width, gates, h, h_next);
+}
+
+void gru_forward(int rows, int width, double* gates, const double* h, double* h_next) {
+  gru_forward_rows(rows, width, gates, h, h_next);
+}
+
+GRAPHDRL_VECTOR_CLONES
+void gru_backward(int rows, int width, float* gates, const float* h, float* grad) {
+  gru_backward_rows(rows, width, gates, h, grad);
+}
+
+void gru_backward(int rows, int width, double* gates, const double* h, double* grad) {
+  gru_backward_rows(rows, width, gates, h, grad);
+}
+
+GRAPHDRL_VECTOR_CLONES
+void elu(float* x, std::size_t count) {
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) x[i] = x[i] > 0 ? x[i] : exponential(x[i]) - 1.0f;
+}
+
+}  // namespace graphdrl

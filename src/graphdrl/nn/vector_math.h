@@ -1,0 +1,26 @@
+// The elementwise loops of networks, as vector code chosen at run time (plain, AVX2, AVX-512).
+#pragma once
+
+#include <cstddef>
+
+namespace graphdrl {
+
+// The four gate inputs of a GRU cell stand side by side in one row, [n | r | z | hn], D values each, so that the
+// product with the message fills the first three and the product with the state adds to the last three. After
+// gru_forward they hold n, r, z and the state's share of n; after gru_backward the loss's derivative by the four
+// inputs.
+
+// h' = (1 - z) n + z h,  r = σ(r),  z = σ(z),  n = tanh(n + r · hn)  [Cho et al. 2014, as PyTorch's GRUCell]
+// gates: [rows, 4D] in and out; h: [rows, D]; h_next: [rows, D], may be h itself.
+void gru_forward(int rows, int width, float* gates, const float* h, float* h_next);
+void gru_forward(int rows, int width, double* gates, const double* h, double* h_next);
+
+// gates: [rows, 4D], from gru_forward in, derivatives out; h: [rows, D], the state before the step;
+// grad: [rows, D], by h' in, by h through the z gate alone out.
+void gru_backward(int rows, int width, float* gates, const float* h, float* grad);
+void gru_backward(int rows, int width, double* gates, const double* h, double* grad);
+
+// x = x > 0 ? x : exp(x) - 1  [Clevert et al. 2015]
+void elu(float* x, std::size_t count);
+
+}  // namespace graphdrl
