@@ -1,0 +1,50 @@
+// The policies that learn nothing: two random ones, depth first and nearest unvisited.
+#pragma once
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/env/policy.h"
+
+namespace graphdrl {
+
+// A policy that looks at one episode at a time.
+class SingleEpisodePolicy : public Policy {
+ public:
+  void act(std::span<const Observation> observations, std::span<int> actions) final;
+
+ protected:
+  virtual int act_on(const Observation& observation) = 0;
+};
+
+// Draws uniformly from all actions: on grids the four directions, blocked or not, as the paper's author's baseline.
+class RandomPolicy final : public SingleEpisodePolicy {
+ public:
+  explicit RandomPolicy(std::uint64_t seed) : rng_(seed) {}
+
+ private:
+  int act_on(const Observation& observation) override;
+  Rng rng_;
+};
+
+// Draws uniformly from the open neighbours.
+class RandomWalkPolicy final : public SingleEpisodePolicy {
+ public:
+  explicit RandomWalkPolicy(std::uint64_t seed) : rng_(seed) {}
+
+ private:
+  int act_on(const Observation& observation) override;
+  Rng rng_;
+};
+
+// Descends to the first unvisited neighbour in the graph's order, and steps back where there is none. Stops at the
+// root. REQUIRES: it walked the episode from its start. Cost of a move: O(steps walked).
+class DepthFirstPolicy final : public SingleEpisodePolicy {
+  int act_on(const Observation& observation) override;
+};
+
+// Walks the shortest way to the nearest unvisited node, the first one that breadth-first search meets. Stops when
+// nothing unvisited can be reached. Cost of a move: O(nodes + edges).
+class NearestUnvisitedPolicy final : public SingleEpisodePolicy {
+  int act_on(const Observation& observation) override;
+};
+
+}  // namespace graphdrl

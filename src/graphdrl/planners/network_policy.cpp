@@ -1,0 +1,48 @@
+#include "graphdrl/planners/network_policy.h"
+
+#include <algorithm>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+
+NetworkPolicy::NetworkPolicy(PaperParameters parameters) : parameters_(std::move(parameters)) {
+  network_.set_parameters(parameters_);
+}
+
+const FeatureEncoder& NetworkPolicy::encoder_for(const World& world) {
+  return encoders_.try_emplace(&world, world).first->second;
+}
+
+void NetworkPolicy::q_values(std::span<const Observation> observations, std::span<float> q) {
+  batch_.clear();
+  for (const Observation& observation : observations) {
+    if (observation.action_space != ActionSpace::kDirections) {
+      throw Error(
+          {.what = "the paper's network chooses directions, on grid maps only", .where = observation.world->name()});
+    }
+    batch_.add(observation.world->graph());
+  }
+  features_.resize(static_cast<std::size_t>(batch_.node_count()) * kFeatureCount);
+  std::span<float> rest = features_;
+  for (const Observation& observation : observations) {
+    const std::size_t size = static_cast<std::size_t>(observation.world->graph().node_count()) * kFeatureCount;
+    encoder_for(*observation.world).encode(observation.position, observation.visits, rest.first(size));
+    rest = rest.subspan(size);
+  }
+  network_.q_values(batch_, features_, q);
+}
+
+void NetworkPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
+  q_.resize(observations.size() * kActionCount);
+  q_values(observations, q_);
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    actions[i] = argmax(std::span(q_).subspan(i * kActionCount, kActionCount));
+  }
+}
+
+int argmax(std::span<const float> values) {
+  return static_cast<int>(std::max_element(values.begin(), values.end()) - values.begin());
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,39 @@
+// The trained Q-network of the paper as a policy.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "graphdrl/env/policy.h"
+#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_network.h"
+
+namespace graphdrl {
+
+// Takes the action of the highest Q-value, the lowest index among equals; blocked moves are not masked. Works on grids
+// of any size, in the directions action space. Throws Error on other worlds.
+class NetworkPolicy final : public Policy {
+ public:
+  explicit NetworkPolicy(PaperParameters parameters);
+  NetworkPolicy(const NetworkPolicy&) = delete;  // the network points into the parameters
+
+  void act(std::span<const Observation> observations, std::span<int> actions) override;
+
+  // q: [B, A], raw.
+  void q_values(std::span<const Observation> observations, std::span<float> q);
+
+  const FeatureEncoder& encoder_for(const World& world);
+
+ private:
+  PaperParameters parameters_;
+  PaperNetwork network_;
+  std::map<const World*, FeatureEncoder> encoders_;
+  GraphBatch batch_;
+  std::vector<float> features_;  // [N, F]
+  std::vector<float> q_;         // [B, A]
+};
+
+// The index of the largest value, the lowest among equals. REQUIRES: values is not empty.
+int argmax(std::span<const float> values);
+
+}  // namespace graphdrl
