@@ -1,0 +1,65 @@
+// The comparison of policies on maps: the paper's Table 2, the ladder beside it, and the optimum.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graphdrl/env/budget.h"
+#include "graphdrl/env/world.h"
+#include "graphdrl/eval/statistics.h"
+
+namespace graphdrl {
+
+// One line of the paper's Table 2, in percent.
+struct PaperResult {
+  double mean;
+  double std;
+  double best;
+};
+
+// For a map `paper:a` … `paper:j` under a budget of 25; empty elsewhere.
+std::optional<PaperResult> paper_result(const std::string& map, double budget_steps);
+
+struct ComparisonOptions {
+  std::vector<std::string> policies;  // as make_policy takes them
+  Budget budget = Budget::parse("25");
+  int episodes = 30;        // per map, from random starts, the same for every policy
+  bool all_starts = false;  // instead: every valid node once
+  std::uint64_t seed = 1;
+};
+
+inline constexpr int kOptimumMaxNodes = 25;  // valid nodes up to which the optimum is computed
+
+// Coverages in percent.
+struct ComparisonRow {
+  std::string map;
+  std::string policy;
+  int valid_nodes;
+  double budget_steps;
+  int episodes;
+  std::optional<Summary> coverage;  // empty where the policy's search is out of reach
+  std::optional<double> optimum;    // mean over the same starts; empty where out of reach
+  std::optional<PaperResult> paper;
+};
+
+struct ComparisonOverall {
+  std::string policy;
+  int maps;                                // with a coverage
+  std::optional<double> mean;              // of the maps' means
+  std::optional<double> ratio_to_optimum;  // mean ÷ mean optimum, a fraction; empty unless every map has an optimum
+};
+
+struct Comparison {
+  ComparisonOptions options;
+  std::vector<ComparisonRow> rows;  // by policy, then by map, both in the order given
+  std::vector<ComparisonOverall> overall;
+};
+
+// Grids are walked in directions, other worlds by neighbours. Throws Error on a bad policy or option.
+Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options);
+
+// The comparison as a text table, at most 80 columns wide unless names are long.
+std::string format_comparison(const Comparison& comparison);
+
+}  // namespace graphdrl

@@ -1,0 +1,28 @@
+#include "graphdrl/eval/statistics.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+namespace graphdrl {
+
+Summary summarise(std::span<const double> values) {
+  const auto count = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  Summary summary{.count = static_cast<int>(values.size()),
+                  .mean = mean,
+                  .best = *std::max_element(values.begin(), values.end()),
+                  .std = std::nullopt,
+                  .ci95 = std::nullopt};
+  if (values.size() < 2) return summary;
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  summary.std = std::sqrt(squares / (count - 1));
+  const double t = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
+  const double half_width = t * *summary.std / std::sqrt(count);
+  summary.ci95 = Interval{mean - half_width, mean + half_width};
+  return summary;
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,26 @@
+// Summaries of samples.
+#pragma once
+
+#include <optional>
+#include <span>
+
+namespace graphdrl {
+
+struct Interval {
+  double low;
+  double high;
+};
+
+// All in the unit of the sample. One value alone has no standard deviation and no interval.
+struct Summary {
+  int count;
+  double mean;
+  double best;                   // the largest
+  std::optional<double> std;     // of the sample: n - 1
+  std::optional<Interval> ci95;  // of the mean: mean ± t(0.975, n - 1) · std / √n
+};
+
+// REQUIRES: values is not empty.
+Summary summarise(std::span<const double> values);
+
+}  // namespace graphdrl
