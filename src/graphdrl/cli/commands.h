@@ -1,0 +1,13 @@
+// The subcommands of `graphdrl`, one per source file beside this one.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace graphdrl {
+
+void add_evaluate_command(CLI::App& app);
+void add_inspect_command(CLI::App& app);
+void add_maps_command(CLI::App& app);
+void add_train_command(CLI::App& app);
+
+}  // namespace graphdrl

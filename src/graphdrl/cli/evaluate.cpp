@@ -1,0 +1,94 @@
+#include <memory>
+
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/eval/comparison.h"
+#include "graphdrl/io/map_source.h"
+
+namespace graphdrl {
+namespace {
+
+struct EvaluateOptions {
+  std::vector<std::string> policies = {"random", "dfs", "nearest", "exact"};
+  std::vector<std::string> maps = {"paper"};
+  std::string budget = "25";
+  ComparisonOptions comparison;
+  bool json = false;
+};
+
+Json to_json(const Comparison& comparison) {
+  Json rows = Json::array();
+  for (const ComparisonRow& row : comparison.rows) {
+    Json json;
+    json["map"] = row.map;
+    json["policy"] = row.policy;
+    json["valid_nodes"] = row.valid_nodes;
+    json["budget"] = row.budget_steps;
+    json["episodes"] = row.episodes;
+    const auto coverage = row.coverage;
+    json["mean"] = coverage ? Json(coverage->mean) : Json();
+    json["std"] = coverage ? or_null(coverage->std) : Json();
+    json["best"] = coverage ? Json(coverage->best) : Json();
+    json["ci95"] = coverage && coverage->ci95 ? Json({coverage->ci95->low, coverage->ci95->high}) : Json();
+    json["optimum"] = or_null(row.optimum);
+    json["paper"] = Json();
+    if (row.paper) json["paper"] = {{"mean", row.paper->mean}, {"std", row.paper->std}, {"best", row.paper->best}};
+    rows.push_back(std::move(json));
+  }
+  Json overall = Json::array();
+  for (const ComparisonOverall& line : comparison.overall) {
+    overall.push_back({{"policy", line.policy},
+                       {"maps", line.maps},
+                       {"mean", or_null(line.mean)},
+                       {"ratio_to_optimum", or_null(line.ratio_to_optimum)}});
+  }
+  return {{"rows", rows}, {"overall", overall}};
+}
+
+void evaluate(const EvaluateOptions& options) {
+  ComparisonOptions comparison = options.comparison;
+  comparison.policies = options.policies;
+  comparison.budget = Budget::parse(options.budget);
+  std::vector<World> worlds;
+  for (const std::string& source : options.maps) {
+    for (const NamedMap& named : load_maps(source)) worlds.emplace_back(named.name, named.map);
+  }
+  const Comparison result = compare(worlds, comparison);
+  if (options.json) {
+    print_json(to_json(result));
+  } else {
+    print_text(format_comparison(result));
+  }
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app) {
+  CLI::App* const command =
+      app.add_subcommand("evaluate", "Compare policies on maps: the paper's Table 2 and the optimum");
+  const auto options = std::make_shared<EvaluateOptions>();
+  command
+      ->add_option("--policy", options->policies,
+                   "random, random-walk, dfs, nearest, exact, or a policy file; may be given again")
+      ->type_name("P")
+      ->capture_default_str();
+  command->add_option("--maps", options->maps, "paper, paper:a to paper:j, a file, or a folder; may be given again")
+      ->type_name("M")
+      ->capture_default_str();
+  command->add_option("--budget", options->budget, "Steps per episode, or a multiple of the valid nodes, as 1.1x")
+      ->type_name("B")
+      ->capture_default_str();
+  CLI::Option* const episodes =
+      command->add_option("--episodes", options->comparison.episodes, "Episodes per map, from random starts")
+          ->type_name("K")
+          ->capture_default_str();
+  command->add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
+      ->excludes(episodes);
+  command->add_option("--seed", options->comparison.seed, "For the starts and for random policies")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Print one JSON document");
+  add_threads_option(*command);
+  command->callback([options] { evaluate(*options); });
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,14 @@
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"GraphDRL learns to explore graphs: to visit as many nodes as it can before a budget runs out.",
+               "graphdrl"};
+  app.set_version_flag("--version", GRAPHDRL_VERSION);
+  app.require_subcommand(1);
+  graphdrl::add_train_command(app);
+  graphdrl::add_evaluate_command(app);
+  graphdrl::add_inspect_command(app);
+  graphdrl::add_maps_command(app);
+  return graphdrl::run_program(app, argc, argv);
+}

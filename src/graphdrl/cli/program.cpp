@@ -1,0 +1,67 @@
+#include "graphdrl/cli/program.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/base/parallel.h"
+
+namespace graphdrl {
+namespace {
+
+int complain(const CLI::App& app, std::string_view message, int status) {
+  const std::string_view line = message.substr(0, message.find('\n'));
+  fmt::print(stderr, "{}: {}\n", app.get_name(), line);
+  return status;
+}
+
+}  // namespace
+
+int run_program(CLI::App& app, int argc, char** argv) {
+  set_threads(hardware_threads());
+  try {
+    app.parse(argc, argv);
+    return kExitDone;
+  } catch (const CLI::CallForHelp&) {
+    // The help of the command asked about, not of the whole program.
+    const CLI::App* asked = &app;
+    while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
+    fmt::print("{}", asked->help(asked == &app ? "" : asked->get_parent()->get_name() + " " + asked->get_name()));
+    return kExitDone;
+  } catch (const CLI::CallForVersion& call) {
+    fmt::print("{}\n", call.what());
+    return kExitDone;
+  } catch (const CLI::RuntimeError& error) {  // a command that chose its own status
+    return error.get_exit_code();
+  } catch (const CLI::ParseError& error) {
+    return complain(app, error.what(), kExitBadInput);
+  } catch (const Error& error) {
+    return complain(app, error.what(), kExitBadInput);
+  } catch (const std::bad_alloc&) {
+    return complain(app, "out of memory", kExitOurFault);
+  } catch (const std::exception& error) {
+    return complain(app, error.what(), kExitOurFault);
+  }
+}
+
+void add_threads_option(CLI::App& command) {
+  command
+      .add_option_function<int>(
+          "--threads", [](int count) { set_threads(count); },
+          "Threads to use; results do not depend on it (default: one per processor)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+}
+
+void print_text(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw Error({.what = "cannot write to standard output"});
+  }
+}
+
+void print_json(const Json& json) {
+  print_text(json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+}  // namespace graphdrl

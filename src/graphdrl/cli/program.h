@@ -1,0 +1,35 @@
+// What both programs share: exit statuses, common options, JSON output.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace graphdrl {
+
+using Json = nlohmann::ordered_json;
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitOurFault = 1;
+inline constexpr int kExitBadInput = 2;
+
+// Parses the arguments, which runs the chosen command's callback, and turns whatever is thrown into one line on
+// standard error and an exit status.
+int run_program(CLI::App& app, int argc, char** argv);
+
+// Adds --threads and has parallel_for use that many; the default is one per processor.
+void add_threads_option(CLI::App& command);
+
+// One JSON document on standard output.
+void print_json(const Json& json);
+
+// Text on standard output. Throws Error where it cannot be written (a closed pipe, a full disk).
+void print_text(const std::string& text);
+
+// A value or null.
+template <typename T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+}  // namespace graphdrl
