@@ -16,7 +16,6 @@ namespace {
 
 constexpr int kPooledWidth = kConvShapes.back().width;
 constexpr const char* kDescriptionKey = "network";
-constexpr const char* kTrainingKey = "training";
 
 std::vector<TensorSpec> make_specs() {
   std::vector<TensorSpec> specs;
@@ -142,11 +141,8 @@ PaperParameters PaperParameters::from_file(const Safetensors& file, const std::s
   return parameters;
 }
 
-void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters, const Metadata& training) {
-  Metadata metadata;
-  metadata[kDescriptionKey] = network_description().dump();
-  if (!training.empty()) metadata[kTrainingKey] = nlohmann::json(training).dump();
-  write_safetensors(path, parameters.views(), metadata);
+void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters) {
+  write_safetensors(path, parameters.views(), {{kDescriptionKey, network_description().dump()}});
 }
 
 PaperParameters read_policy_file(const std::filesystem::path& path) {

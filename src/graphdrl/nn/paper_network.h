@@ -63,7 +63,7 @@ class PaperParameters {
 };
 
 // A policy file: the parameters and, as metadata, the network's full description. Throws Error.
-void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters, const Metadata& training);
+void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters);
 PaperParameters read_policy_file(const std::filesystem::path& path);
 
 // Computes Q-values as PyTorch does in eval mode: batch norm by its running statistics, no dropout. Keeps its working

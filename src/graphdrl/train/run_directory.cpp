@@ -1,0 +1,20 @@
+#include "graphdrl/train/run_directory.h"
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/file.h"
+
+namespace graphdrl {
+
+void RunDirectory::create() const {
+  for (const auto& file : {config(), checkpoint()}) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) continue;
+    throw Error({.what = "the folder holds a run already",
+                 .expected = "a new folder, or --resume to go on with that run",
+                 .got = file.filename().string(),
+                 .where = path_.string()});
+  }
+  prepare_folder(path_);
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,82 @@
+#include "graphdrl/train/train_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/file.h"
+
+namespace graphdrl {
+namespace {
+
+void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices) {
+  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+  std::string expected;
+  for (const std::string& choice : choices) expected += (expected.empty() ? "" : " or ") + choice;
+  throw Error({.what = "bad value", .expected = expected, .got = in_quotes(value), .where = option});
+}
+
+template <typename T>
+void check_range(const std::string& option, T value, T low, T high) {
+  if (value >= low && value <= high) return;
+  throw Error({.what = "value out of range",
+               .expected = fmt::format("{} to {}", low, high),
+               .got = fmt::format("{}", value),
+               .where = option});
+}
+
+}  // namespace
+
+void validate(const TrainOptions& options) {
+  constexpr std::int64_t kMany = 1'000'000'000;
+  check_choice("--preset", options.preset, {"paper"});
+  check_choice("--reward", options.reward, {"visit_penalty", "coverage_gain"});
+  check_choice("--algorithm", options.algorithm, {"dqn", "double-dqn"});
+  check_range<std::int64_t>("--episodes", options.episodes, 1, kMany);
+  check_range<std::int64_t>("--batch-size", options.batch_size, 1, 65'536);
+  check_range<std::int64_t>("--replay-capacity", options.replay_capacity, options.batch_size + 1, kMany);
+  check_range<std::int64_t>("--checkpoint-every", options.checkpoint_every, 1, kMany);
+  check_range("--discount", options.discount, 0.0, 1.0);
+  check_range("--learning-rate", options.learning_rate, 0.0, 1e3);
+  check_range("--soft-update", options.soft_update, 0.0, 1.0);
+  check_range("--dropout", options.dropout, 0.0, 0.99);
+  Budget::parse(options.budget);
+  if (options.maps.empty()) throw Error({.what = "no maps to train on", .where = "--maps"});
+}
+
+EpisodeOptions episode_options(const TrainOptions& options, const World& world) {
+  return {.budget = Budget::parse(options.budget).steps_in(world),
+          .action_space = ActionSpace::kDirections,
+          .reward = options.reward == "coverage_gain" ? RewardKind::kCoverageGain : RewardKind::kVisitPenalty,
+          .end_at_full_coverage = options.end_at_full_coverage,
+          .punish_blocked_by_visits = options.punish_blocked_by_visits};
+}
+
+void write_config(const std::filesystem::path& path, const TrainOptions& options) {
+  nlohmann::ordered_json json;
+  for_each_field(options, [&](const char* key, const auto& value, const char*) { json[key] = value; });
+  write_file(path, json.dump(2) + '\n');
+}
+
+TrainOptions read_config(const std::filesystem::path& path) {
+  const auto json = nlohmann::json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) throw Error({.what = "not a run's configuration", .where = path.string()});
+  TrainOptions options;
+  std::size_t known = 0;
+  for_each_field(options, [&](const char* key, auto& value, const char*) {
+    if (!json.contains(key)) throw Error({.what = "missing key " + in_quotes(key), .where = path.string()});
+    try {
+      json[key].get_to(value);
+    } catch (const nlohmann::json::exception&) {
+      throw Error({.what = "value of the wrong type", .got = json[key].dump(), .where = path.string() + ": " + key});
+    }
+    ++known;
+  });
+  if (known != json.size()) throw Error({.what = "a key that no option has", .where = path.string()});
+  validate(options);
+  return options;
+}
+
+}  // namespace graphdrl
