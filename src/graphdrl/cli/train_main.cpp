@@ -83,7 +83,7 @@ void train(const TrainCommand& command) {
   const std::string run = trainer->run_directory().path().string();
   catch_signals();
   ProgressDisplay display(stderr, trainer->progress().episode);
-  const bool finished = trainer->run(stop_signal, display);
+  const bool finished = trainer->run([] { return stop_signal != 0; }, display);
   const TrainingProgress& progress = trainer->progress();
   if (!finished) {
     fmt::print(stderr,
@@ -112,23 +112,25 @@ int main_program(int argc, char** argv) {
   for_each_field(command->options, [&](const char* key, auto& value, const char* help) {
     add_field(app, "--" + kebab_case(key), value, help);
   });
-  const std::vector<CLI::Option*> new_run = [&] {
-    std::vector<CLI::Option*> options =
-        app.get_options([](const CLI::Option* option) { return option->get_name() != "--help"; });
-    options.push_back(
-        app.add_option("--out", command->out, "The run directory, new (default: runs/PRESET)")->type_name("RUN"));
-    return options;
-  }();
-  CLI::Option* const resume =
-      app.add_option("--resume", command->resume, "Go on with a run, with the options it was started with")
-          ->type_name("RUN");
-  for (CLI::Option* const option : new_run) resume->excludes(option);
+  app.add_option("--out", command->out, "The run directory, new (default: runs/PRESET)")->type_name("RUN");
+  const std::vector<CLI::Option*> new_run =
+      app.get_options([](CLI::Option* option) { return option->get_name() != "--help"; });
+  app.add_option("--resume", command->resume, "Go on with a run; takes none of the options above")->type_name("RUN");
   app.add_flag("--json", command->json, "Print one JSON document when done");
   add_threads_option(app);
   app.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
   app.config_formatter(std::make_shared<ConfigReader>());
   app.allow_config_extras(CLI::config_extras_mode::error);
-  app.callback([command] { train(*command); });
+  app.callback([command, new_run] {
+    for (const CLI::Option* const option : new_run) {
+      if (!command->resume.empty() && option->count() > 0) {
+        throw Error({.what = option->get_name() + " does not go with --resume",
+                     .expected = "the options that the run was started with",
+                     .where = command->resume});
+      }
+    }
+    train(*command);
+  });
   return run_program(app, argc, argv);
 }
 

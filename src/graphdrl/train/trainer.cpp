@@ -90,7 +90,7 @@ std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run) {
   return trainer;
 }
 
-bool Trainer::run(const std::atomic<int>& stop, ProgressDisplay& display) {
+bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
   steps_before_session_ = progress_.steps;
   const double elapsed_before_s = progress_.elapsed_s;
   const auto start = std::chrono::steady_clock::now();
@@ -103,8 +103,8 @@ bool Trainer::run(const std::atomic<int>& stop, ProgressDisplay& display) {
   while (progress_.episode < options_.episodes) {  // for episode e = 1 … E
     if (!in_episode_) begin_episode();             //   construct the initial state s_0
     Episode& episode = episodes_[world_];
-    while (!episode.done() && stop == 0) {  //   for step t = 1 … T
-      const int action = choose_action();   //     select a_t following an epsilon-strategy
+    while (!episode.done() && !stop()) {   //   for step t = 1 … T
+      const int action = choose_action();  //     select a_t following an epsilon-strategy
       const NodeId from = episode.position();
       visits_before_ = episode.visits();
       const StepResult step = episode.step(action);  //     receive r_t and move to s_{t+1}

@@ -1,7 +1,7 @@
 // The training loop [paper, Algorithm 1].
 #pragma once
 
-#include <atomic>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -45,8 +45,9 @@ class Trainer {
   // Goes on with the run in a directory. Throws Error where its files are not whole.
   static std::unique_ptr<Trainer> resume(const RunDirectory& run);
 
-  // Trains until the last episode is done or `stop` is not 0, then saves. Gives whether the training is finished.
-  bool run(const std::atomic<int>& stop, ProgressDisplay& display);
+  // Trains until the last episode is done or `stop`, asked before every step, says so; then saves. Gives whether the
+  // training is finished.
+  bool run(const std::function<bool()>& stop, ProgressDisplay& display);
 
   const TrainOptions& options() const { return options_; }
   const RunDirectory& run_directory() const { return run_; }

@@ -1,0 +1,142 @@
+#include "graphdrl/env/episode.h"
+
+#include <gmock/gmock.h>
+
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr int kLeft = 0;
+constexpr int kUp = 1;
+constexpr int kRight = 2;
+constexpr int kDown = 3;
+
+// 0 1
+// # 3
+World corner() {
+  return grid_world("..\n#.\n");
+}
+
+TEST(Episode, RewardsAsEquation3) {
+  const World world = corner();
+  Episode episode(world, {.budget = 8});
+  episode.reset(0);
+  EXPECT_EQ(episode.visits(), (std::vector<std::uint32_t>{1, 0, 0, 0}));
+
+  StepResult step = episode.step(kLeft);  // off the map: stays, counts as a visit
+  EXPECT_DOUBLE_EQ(step.reward, -0.5);
+  EXPECT_TRUE(step.blocked);
+  EXPECT_EQ(episode.position(), 0);
+  EXPECT_EQ(episode.visits()[0], 2u);
+
+  step = episode.step(kDown);  // into the obstacle
+  EXPECT_DOUBLE_EQ(step.reward, -0.5);
+  EXPECT_EQ(episode.visits()[0], 3u);
+  EXPECT_EQ(episode.visits()[2], 0u);
+
+  step = episode.step(kRight);  // a new node
+  EXPECT_DOUBLE_EQ(step.reward, 0.1);
+  EXPECT_TRUE(step.first_visit);
+
+  step = episode.step(kLeft);  // back: 0.1 times the three visits before
+  EXPECT_DOUBLE_EQ(step.reward, -0.1 * 3);
+  EXPECT_FALSE(step.first_visit);
+  EXPECT_EQ(episode.visits()[0], 4u);
+
+  EXPECT_DOUBLE_EQ(episode.coverage(), 2.0 / 3);
+  EXPECT_THAT(episode.walk(), ElementsAre(0, 0, 0, 1, 0));
+  EXPECT_EQ(episode.spent(), 4);
+}
+
+TEST(Episode, RewardsAsEquation2) {
+  const World world = corner();
+  Episode episode(world, {.budget = 8, .reward = RewardKind::kCoverageGain});
+  episode.reset(0);
+  EXPECT_DOUBLE_EQ(episode.step(kUp).reward, 0);
+  EXPECT_DOUBLE_EQ(episode.step(kRight).reward, 1.0 / 3);
+  EXPECT_DOUBLE_EQ(episode.step(kLeft).reward, 0);
+  // Over an episode, the rewards add up to the coverage gained [paper, eq. 1 and 2].
+  EXPECT_DOUBLE_EQ(1.0 / 3 + 1.0 / 3, episode.coverage());
+}
+
+TEST(Episode, GoesOnAfterFullCoverageUntilTheBudgetIsSpent) {
+  const World world = corner();
+  Episode episode(world, {.budget = 3});
+  episode.reset(0);
+  episode.step(kRight);
+  episode.step(kDown);
+  EXPECT_EQ(episode.coverage(), 1);
+  EXPECT_FALSE(episode.done());
+  EXPECT_FALSE(episode.terminal());
+  episode.step(kUp);
+  EXPECT_TRUE(episode.done());
+  EXPECT_FALSE(episode.terminal()) << "a spent budget is a truncation";
+}
+
+TEST(Episode, CanEndAtFullCoverageWithABonus) {
+  const World world = corner();
+  for (const auto& [kind, reward] :
+       {std::pair(RewardKind::kVisitPenalty, 0.1), std::pair(RewardKind::kCoverageGain, 1.0 / 3)}) {
+    Episode episode(world, {.budget = 9, .reward = kind, .end_at_full_coverage = true});
+    episode.reset(0);
+    EXPECT_DOUBLE_EQ(episode.step(kRight).reward, reward);
+    EXPECT_DOUBLE_EQ(episode.step(kDown).reward, reward + 1);
+    EXPECT_TRUE(episode.done());
+    EXPECT_TRUE(episode.terminal());
+  }
+}
+
+TEST(Episode, CanPunishBlockedMovesByVisits) {
+  const World world = corner();
+  Episode episode(world, {.budget = 9, .punish_blocked_by_visits = true});
+  episode.reset(0);
+  EXPECT_DOUBLE_EQ(episode.step(kLeft).reward, -0.5 - 0.1 * 1);
+  EXPECT_DOUBLE_EQ(episode.step(kLeft).reward, -0.5 - 0.1 * 2);
+}
+
+TEST(Episode, WalksAnyGraphByNeighbours) {
+  const std::vector<Edge> edges = {{0, 1}, {0, 2}, {0, 3}, {2, 3}};
+  const World world("star", Graph::from_edges(4, edges), {false, true, false, false});
+  Episode episode(world, {.budget = 2, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  EXPECT_EQ(episode.observation().action_count(), 2);  // 2 and 3; 1 is blocked
+  episode.step(1);
+  EXPECT_EQ(episode.position(), 3);
+  EXPECT_EQ(action_to(episode.observation(), 2), 1);
+}
+
+TEST(Episode, EndsWhereThereIsNowhereToGo) {
+  const World world("alone", Graph::from_edges(1, {}), {false});
+  Episode episode(world, {.budget = 5, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  EXPECT_TRUE(episode.done());
+  EXPECT_EQ(episode.coverage(), 1);
+}
+
+TEST(Episode, RefusesBadStartsBudgetsAndSpaces) {
+  const World world = corner();
+  Episode episode(world, {});
+  EXPECT_THAT(error_of([&] { episode.reset(2); }), HasSubstr("start on an obstacle"));
+  EXPECT_THAT(error_of([&] { episode.reset(4); }), HasSubstr("expected a node from 0 to 3, got 4"));
+  EXPECT_THAT(error_of([&] { episode.reset(-1); }), HasSubstr("start outside the world"));
+  EXPECT_THAT(error_of([&] { Episode(world, {.budget = -1}); }), HasSubstr("bad budget"));
+  EXPECT_THAT(error_of([&] { Episode(world, {.budget = NAN}); }), HasSubstr("bad budget"));
+  const World graph("graph", Graph::from_edges(2, {}), {false, false});
+  EXPECT_THAT(error_of([&] { Episode(graph, {}); }), HasSubstr("directions need a grid"));
+  EXPECT_THAT(error_of([&] { World("w", Graph::from_edges(1, {}), {true}); }), HasSubstr("no valid node"));
+}
+
+TEST(Episode, AZeroBudgetIsOverAtOnce) {
+  const World world = corner();
+  Episode episode(world, {.budget = 0});
+  episode.reset(3);
+  EXPECT_TRUE(episode.done());
+  EXPECT_THAT(episode.walk(), ElementsAre(3));
+}
+
+}  // namespace
+}  // namespace graphdrl

@@ -1,0 +1,76 @@
+#include "graphdrl/eval/comparison.h"
+
+#include <gmock/gmock.h>
+
+#include "graphdrl/io/map_source.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<World> paper_worlds() {
+  std::vector<World> worlds;
+  for (const NamedMap& named : load_maps("paper")) worlds.emplace_back(named.name, named.map);
+  return worlds;
+}
+
+// The figures were computed independently, with the same tie rules.
+TEST(Compare, FindsTheKnownCoveragesOfThePapersMaps) {
+  const Comparison result = compare(paper_worlds(), {.policies = {"nearest", "exact"}, .all_starts = true});
+  ASSERT_EQ(result.rows.size(), 20u);
+  const std::vector<double> nearest = {95.3, 100, 100, 100, 100, 100, 95.8, 97.7, 100, 99.8};
+  for (int map = 0; map < 10; ++map) {
+    EXPECT_NEAR(result.rows[map].coverage->mean, nearest[map], 0.051) << result.rows[map].map;
+    EXPECT_EQ(result.rows[map].episodes, result.rows[map].valid_nodes);
+    EXPECT_EQ(result.rows[10 + map].coverage->mean, 100);
+    EXPECT_EQ(*result.rows[map].optimum, 100);
+  }
+  EXPECT_NEAR(*result.overall[0].mean, 98.9, 0.1);
+  EXPECT_NEAR(*result.overall[0].ratio_to_optimum, 0.989, 0.001);
+  EXPECT_EQ(result.overall[1].maps, 10);
+}
+
+TEST(Compare, StandsBesideThePaperUnderItsBudgetOnly) {
+  EXPECT_EQ(paper_result("paper:a", 25)->mean, 89.8);
+  EXPECT_EQ(paper_result("paper:j", 25)->best, 95.5);
+  EXPECT_FALSE(paper_result("paper:a", 24));
+  EXPECT_FALSE(paper_result("a", 25));
+  EXPECT_FALSE(paper_result("paper:k", 25));
+}
+
+TEST(Compare, IsTheSameForTheSameSeedAndStartsEveryPolicyAlike) {
+  const ComparisonOptions options{.policies = {"nearest", "random", "nearest"}, .episodes = 7, .seed = 3};
+  const std::vector<World> worlds = paper_worlds();
+  const Comparison once = compare(worlds, options);
+  const Comparison again = compare(worlds, options);
+  EXPECT_EQ(format_comparison(once), format_comparison(again));
+  for (std::size_t map = 0; map < worlds.size(); ++map) {
+    EXPECT_EQ(once.rows[map].coverage->mean, once.rows[20 + map].coverage->mean);
+    EXPECT_EQ(once.rows[map].episodes, 7);
+  }
+}
+
+TEST(Compare, LeavesOutWhatIsOutOfReach) {
+  std::vector<World> worlds;
+  worlds.emplace_back("long", GridMap{.rows = 1, .cols = 70, .blocked = std::vector<bool>(70)});
+  worlds.push_back(grid_world("...\n"));
+  const Comparison result = compare(worlds, {.policies = {"exact", "nearest"}, .budget = Budget::parse("1.0x")});
+  EXPECT_FALSE(result.rows[0].coverage);
+  EXPECT_FALSE(result.rows[0].optimum);
+  EXPECT_EQ(result.overall[0].maps, 1);
+  EXPECT_TRUE(result.overall[0].ratio_to_optimum);
+  EXPECT_FALSE(result.overall[1].ratio_to_optimum);
+  EXPECT_EQ(result.rows[2].budget_steps, 70);
+  EXPECT_THAT(format_comparison(result), HasSubstr("–"));
+}
+
+TEST(Compare, RefusesBadOptions) {
+  EXPECT_THAT(error_of([] { compare(paper_worlds(), {.policies = {"nearest"}, .episodes = 0}); }),
+              HasSubstr("expected at least 1, got 0"));
+  EXPECT_THAT(error_of([] { compare(paper_worlds(), {.policies = {"what"}}); }), HasSubstr("no such policy"));
+}
+
+}  // namespace
+}  // namespace graphdrl

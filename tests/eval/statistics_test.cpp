@@ -1,0 +1,37 @@
+#include "graphdrl/eval/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace graphdrl {
+namespace {
+
+TEST(Summarise, IsWorkedOutByHand) {
+  const Summary summary = summarise(std::vector<double>{2, 4, 6});
+  EXPECT_EQ(summary.count, 3);
+  EXPECT_DOUBLE_EQ(summary.mean, 4);
+  EXPECT_DOUBLE_EQ(summary.best, 6);
+  EXPECT_DOUBLE_EQ(*summary.std, 2);                         // √((4 + 0 + 4) / 2)
+  const double half_width = 4.302652730 * 2 / std::sqrt(3);  // t(0.975, 2), from a table
+  EXPECT_NEAR(summary.ci95->low, 4 - half_width, 1e-6);
+  EXPECT_NEAR(summary.ci95->high, 4 + half_width, 1e-6);
+}
+
+TEST(Summarise, HasNoSpreadForOneValue) {
+  const Summary summary = summarise(std::vector<double>{5});
+  EXPECT_EQ(summary.mean, 5);
+  EXPECT_FALSE(summary.std);
+  EXPECT_FALSE(summary.ci95);
+}
+
+TEST(Summarise, OfEqualValuesIsAPoint) {
+  const Summary summary = summarise(std::vector<double>{7, 7, 7});
+  EXPECT_EQ(*summary.std, 0);
+  EXPECT_EQ(summary.ci95->low, 7);
+  EXPECT_EQ(summary.ci95->high, 7);
+}
+
+}  // namespace
+}  // namespace graphdrl

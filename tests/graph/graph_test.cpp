@@ -1,0 +1,66 @@
+#include "graphdrl/graph/graph.h"
+
+#include <gmock/gmock.h>
+
+#include "graphdrl/graph/grid_map.h"
+#include "graphdrl/graph/search.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(Graph, KeepsNeighboursAscendingAndEdgesOnce) {
+  const std::vector<Edge> edges = {{2, 0}, {0, 1}, {1, 0}, {3, 0}};
+  const Graph graph = Graph::from_edges(4, edges);
+  EXPECT_EQ(graph.node_count(), 4);
+  EXPECT_EQ(graph.edge_count(), 3);
+  EXPECT_THAT(graph.neighbours(0), ElementsAre(1, 2, 3));
+  EXPECT_THAT(graph.neighbours(3), ElementsAre(0));
+}
+
+TEST(Graph, RefusesLoopsAndStrangeNodes) {
+  const std::vector<Edge> loop = {{1, 1}};
+  EXPECT_THAT(error_of([&] { Graph::from_edges(3, loop); }), HasSubstr("from node 1 to itself"));
+  const std::vector<Edge> far = {{0, 3}};
+  EXPECT_THAT(error_of([&] { Graph::from_edges(3, far); }), HasSubstr("expected node ids 0 to 2, got 3"));
+}
+
+TEST(Graph, GridNeighboursStandLeftUpRightDown) {
+  const Graph grid = Graph::grid(3, 3);
+  EXPECT_EQ(grid.edge_count(), 12);
+  EXPECT_THAT(grid.neighbours(4), ElementsAre(3, 1, 5, 7));
+  EXPECT_THAT(grid.neighbours(0), ElementsAre(1, 3));
+  EXPECT_THAT(grid.neighbours(8), ElementsAre(7, 5));
+  EXPECT_EQ(Graph::grid(5, 5).edge_count(), 40);
+}
+
+TEST(Graph, WithoutDropsTheEdgesOfANode) {
+  const Graph rest = Graph::grid(3, 3).without({false, false, false, false, true, false, false, false, false});
+  EXPECT_EQ(rest.node_count(), 9);
+  EXPECT_EQ(rest.edge_count(), 8);
+  EXPECT_THAT(rest.neighbours(1), ElementsAre(0, 2));
+  EXPECT_EQ(rest.degree(4), 0);
+}
+
+TEST(Search, FindsTheNearestInNeighbourOrder) {
+  const Graph grid = Graph::grid(3, 3);
+  const auto anywhere = [](NodeId) { return true; };
+  const auto corner = [](NodeId node) { return node == 0 || node == 8; };
+  EXPECT_THAT(path_to_nearest(grid, 4, corner, anywhere), ElementsAre(3, 0));  // left before up
+  const auto around = [](NodeId node) { return node != 3 && node != 1; };
+  EXPECT_THAT(path_to_nearest(grid, 4, corner, around), ElementsAre(5, 8));
+  EXPECT_TRUE(path_to_nearest(
+                  grid, 4, [](NodeId) { return false; }, anywhere)
+                  .empty());
+}
+
+TEST(Search, CountsComponents) {
+  EXPECT_EQ(count_components(Graph::grid(1, 3), {false, true, false}), 2);
+  EXPECT_EQ(count_components(Graph::grid(2, 2), {false, false, false, false}), 1);
+}
+
+}  // namespace
+}  // namespace graphdrl

@@ -1,0 +1,119 @@
+#include "graphdrl/nn/paper_network.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+
+#include "graphdrl/io/file.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::HasSubstr;
+
+PaperParameters some_parameters(std::uint64_t seed = 1) {
+  Rng rng(seed);
+  return PaperParameters(rng);
+}
+
+TEST(PaperNetwork, CountsTheParametersOfTable1) {
+  std::map<std::string, std::size_t> by_layer;
+  for (const TensorSpec& spec : PaperParameters::specs()) {
+    if (spec.trainable) by_layer[spec.name.substr(0, spec.name.find('.'))] += spec.size;
+  }
+  const std::map<std::string, std::size_t> expected = {{"conv1", 532}, {"bn1", 14},        {"conv2", 41'344},
+                                                       {"bn2", 128},   {"conv3", 164'608}, {"fc1", 33'024},
+                                                       {"fc2", 1'028}};
+  EXPECT_EQ(by_layer, expected);
+  EXPECT_EQ(PaperParameters::trainable_count(), 240'678u);
+}
+
+TEST(PaperNetwork, StartsAsPyTorchDoes) {
+  const PaperParameters parameters = some_parameters();
+  const auto largest = [&](const std::string& name, std::size_t size) {
+    float result = 0;
+    for (std::size_t i = 0; i < size; ++i) result = std::max(result, std::abs(parameters.tensor(name)[i]));
+    return result;
+  };
+  // Uniform within ± a bound: the largest of many values is just below it.
+  EXPECT_NEAR(largest("conv3.weight", 4 * 128 * 128), 1 / std::sqrt(128.0f), 1e-4);
+  EXPECT_NEAR(largest("conv2.rnn.weight_hh", 192 * 64), 1 / std::sqrt(64.0f), 1e-3);
+  EXPECT_NEAR(largest("fc1.weight", 256 * 128), 1 / std::sqrt(128.0f), 1e-4);
+  EXPECT_NEAR(largest("fc2.weight", 4 * 256), 1 / std::sqrt(256.0f), 1e-3);
+  EXPECT_EQ(parameters.tensor("bn2.weight")[63], 1);
+  EXPECT_EQ(parameters.tensor("bn2.bias")[63], 0);
+  EXPECT_EQ(parameters.tensor("bn1.running_mean")[0], 0);
+  EXPECT_EQ(parameters.tensor("bn1.running_var")[6], 1);
+}
+
+TEST(PaperNetwork, GivesABatchWhatItGivesEachGraphAlone) {
+  const PaperParameters parameters = some_parameters();
+  PaperNetwork network;
+  network.set_parameters(parameters);
+  const std::vector<Graph> graphs = {Graph::grid(5, 5), Graph::grid(2, 3), Graph::grid(12, 12), Graph::grid(5, 5)};
+  Rng rng(2);
+  GraphBatch batch;
+  std::vector<float> x;
+  std::vector<float> expected;
+  for (const Graph& graph : graphs) {
+    batch.add(graph);
+    GraphBatch single;
+    single.add(graph);
+    std::vector<float> own(static_cast<std::size_t>(graph.node_count()) * 7);
+    for (float& value : own) value = static_cast<float>(rng.below(5));
+    std::array<float, 4> q{};
+    network.q_values(single, own, q);
+    expected.insert(expected.end(), q.begin(), q.end());
+    x.insert(x.end(), own.begin(), own.end());
+  }
+  std::vector<float> q(4 * graphs.size());
+  network.q_values(batch, x, q);
+  for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(q[i], expected[i], 1e-4 * (1 + std::abs(expected[i])));
+}
+
+TEST(PolicyFile, RoundTripsAndHoldsNoOtherTensor) {
+  const TemporaryFolder folder;
+  const PaperParameters parameters = some_parameters();
+  write_policy_file(folder / "p.safetensors", parameters);
+  const PaperParameters copy = read_policy_file(folder / "p.safetensors");
+  EXPECT_TRUE(std::equal(copy.values().begin(), copy.values().end(), parameters.values().begin()));
+  const Safetensors file = Safetensors::read(folder / "p.safetensors");
+  EXPECT_EQ(file.entries().size(), 27u);
+  EXPECT_EQ(file.get<float>("conv1.rnn.weight_ih", {21, 7}).size(), 147u);
+}
+
+TEST(PolicyFile, IsRefusedWhenItIsAnothersOrDamaged) {
+  const TemporaryFolder folder;
+  const PaperParameters parameters = some_parameters();
+  write_policy_file(folder / "p", parameters);
+  const std::string whole = read_file(folder / "p");
+  const auto error_for = [&](const std::string& content) {
+    write_file(folder / "bad", content);
+    return error_of([&] { read_policy_file(folder / "bad"); });
+  };
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string content = whole;
+    content.replace(content.find(from), from.size(), to);
+    return content;
+  };
+  EXPECT_EQ(error_for(whole), "");
+  EXPECT_THAT(error_for(whole.substr(0, whole.size() - 1)), HasSubstr("lies outside the file"));
+  EXPECT_THAT(error_for(whole.substr(0, 100)), HasSubstr("not a whole safetensors file"));
+  EXPECT_THAT(error_for(replaced("[4,7,7]", "[7,4,7]")), HasSubstr("wrong shape: expected [4, 7, 7], got [7, 4, 7]"));
+  EXPECT_THAT(error_for(replaced("\"F32\"", "\"I32\"")), HasSubstr("wrong type: expected F32, got I32"));
+  EXPECT_THAT(error_for(replaced("conv1.weight", "conv9.weight")), HasSubstr("'conv1.weight' is missing"));
+  EXPECT_THAT(error_for(replaced("\\\"width\\\":64", "\\\"width\\\":63")), HasSubstr("policy of another network"));
+  EXPECT_THAT(error_for(replaced("\"network\"", "\"notwork\"")), HasSubstr("not a policy file"));
+  EXPECT_THAT(error_for(""), HasSubstr("not a safetensors file"));
+
+  std::vector<TensorView> more = parameters.views();
+  const std::vector<float> extra = {1};
+  more.emplace_back("extra", Shape{1}, std::span(extra));
+  write_safetensors(folder / "more", more, Safetensors::read(folder / "p").metadata());
+  EXPECT_THAT(error_of([&] { read_policy_file(folder / "more"); }), HasSubstr("expected 27 tensors, got 28"));
+}
+
+}  // namespace
+}  // namespace graphdrl

@@ -1,0 +1,48 @@
+#include "graphdrl/nn/vector_math.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace graphdrl {
+namespace {
+
+TEST(VectorMath, EluIsExpMinusOneBelowZero) {
+  std::vector<float> x;
+  for (float value = -100; value < 10; value += 0.37f) x.push_back(value);
+  const std::vector<float> before = x;
+  elu(x.data(), x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_NEAR(x[i], before[i] > 0 ? before[i] : std::expm1(before[i]), 3e-7);
+  }
+}
+
+TEST(VectorMath, GruStepIsTheFormulas) {
+  // Odd widths leave a remainder behind the vector code.
+  for (const int width : {1, 7, 19, 64}) {
+    std::vector<float> gates(4 * width);
+    std::vector<float> h(width);
+    std::vector<double> expected;
+    for (int i = 0; i < width; ++i) {
+      const float n = 0.3f * static_cast<float>(i) - 5;
+      const float r = 2 - 0.2f * static_cast<float>(i);
+      const float z = 0.1f * static_cast<float>(i) - 1;
+      const float hn = 1.5f - 0.1f * static_cast<float>(i);
+      gates[i] = n;
+      gates[width + i] = r;
+      gates[2 * width + i] = z;
+      gates[3 * width + i] = hn;
+      h[i] = 0.05f * static_cast<float>(i);
+      const double reset = 1 / (1 + std::exp(-static_cast<double>(r)));
+      const double update = 1 / (1 + std::exp(-static_cast<double>(z)));
+      const double candidate = std::tanh(n + reset * hn);
+      expected.push_back((1 - update) * candidate + update * h[i]);
+    }
+    gru_forward(1, width, gates.data(), h.data(), h.data());
+    for (int i = 0; i < width; ++i) EXPECT_NEAR(h[i], expected[i], 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace graphdrl

@@ -1,0 +1,49 @@
+#include "graphdrl/planners/network_policy.h"
+
+#include <gmock/gmock.h>
+
+#include "graphdrl/eval/rollout.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/planners/registry.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Argmax, TakesTheLowestOfEquals) {
+  EXPECT_EQ(argmax(std::vector<float>{1, 3, 3, 2}), 1);
+  EXPECT_EQ(argmax(std::vector<float>{-1}), 0);
+}
+
+TEST(NetworkPolicy, TakesTheDirectionOfTheHighestQValueEvenWhereItIsBlocked) {
+  // All weights 0: the Q-values are the last layer's biases.
+  PaperParameters parameters;
+  parameters.tensor("fc2.bias")[1] = 0.5f;  // up
+  NetworkPolicy policy(std::move(parameters));
+  const World world = grid_world("..\n..\n");
+  const std::vector<NodeId> starts = {0, 3};
+  const auto results = roll_out(world, starts, {.budget = 2}, policy);
+  EXPECT_EQ(results[0].walk, (std::vector<NodeId>{0, 0, 0}));
+  EXPECT_EQ(results[1].walk, (std::vector<NodeId>{3, 1, 1}));
+  EXPECT_DOUBLE_EQ(results[1].coverage, 0.5);
+}
+
+TEST(Registry, MakesPoliciesByNameAndFile) {
+  const TemporaryFolder folder;
+  Rng rng(1);
+  write_policy_file(folder / "mine.safetensors", PaperParameters(rng));
+  for (const char* name : {"random", "random-walk", "dfs", "nearest", "exact"}) {
+    EXPECT_NE(make_policy(name, 1), nullptr);
+    EXPECT_EQ(policy_label(name), name);
+  }
+  const std::string file = (folder / "mine.safetensors").string();
+  EXPECT_NE(make_policy(file, 1), nullptr);
+  EXPECT_EQ(policy_label(file), "mine");
+  EXPECT_THAT(error_of([] { make_policy("best", 1); }),
+              HasSubstr("expected dfs, exact, nearest, random, random-walk or a policy file, got 'best'"));
+}
+
+}  // namespace
+}  // namespace graphdrl

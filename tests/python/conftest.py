@@ -1,0 +1,47 @@
+"""What the Python tests share: the programs under test, and a reader of safetensors files of its own."""
+
+import json
+import os
+import pathlib
+import struct
+import subprocess
+
+import numpy
+import pytest
+
+BIN = pathlib.Path(os.environ["GRAPHDRL_BIN"])
+DTYPES = {"F32": "<f4", "F64": "<f8", "I32": "<i4", "I64": "<i8", "U16": "<u2", "U64": "<u8"}
+
+
+def read_safetensors(path):
+    """Gives the tensors by name, and the metadata."""
+    content = pathlib.Path(path).read_bytes()
+    (length,) = struct.unpack("<Q", content[:8])
+    header = json.loads(content[8 : 8 + length])
+    metadata = header.pop("__metadata__", {})
+    data = content[8 + length :]
+    tensors = {}
+    for name, entry in header.items():
+        begin, end = entry["data_offsets"]
+        tensors[name] = numpy.frombuffer(data[begin:end], DTYPES[entry["dtype"]]).reshape(entry["shape"]).copy()
+    return tensors, metadata
+
+
+@pytest.fixture
+def run():
+    """Runs a program of the build; gives the finished process, with its output as text."""
+
+    def call(program, *arguments, **options):
+        command = [BIN / program, *map(str, arguments)]
+        return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def trained(tmp_path_factory):
+    """A short run, for tests that need files of a training."""
+    folder = tmp_path_factory.mktemp("runs") / "run"
+    command = [BIN / "graphdrl", "train", "--episodes", "25", "--out", folder, "--json"]
+    process = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True)
+    return folder, json.loads(process.stdout)

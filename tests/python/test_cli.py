@@ -1,0 +1,230 @@
+"""The programs as a user meets them: contracts of the output, bad input, interruption."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+
+from conftest import BIN, read_safetensors
+
+MAP_A = "...#.\n.###.\n.#...\n.#...\n.....\n"
+
+
+def evaluate(run, *arguments):
+    process = run("graphdrl", "evaluate", "--json", *arguments)
+    assert process.returncode == 0, process.stderr
+    assert process.stderr == ""
+    return json.loads(process.stdout)
+
+
+def test_help_and_version(run):
+    for arguments in (["--help"], ["evaluate", "--help"], ["maps", "show", "--help"], ["train", "--help"], ["inspect", "--help"]):
+        process = run("graphdrl", *arguments)
+        assert process.returncode == 0
+        assert "Usage:" in process.stdout
+    assert re.fullmatch(r"\d+\.\d+\.\d+\n", run("graphdrl", "--version").stdout)
+
+
+def test_evaluate_gives_the_documented_keys(run, trained):
+    folder, _ = trained
+    result = evaluate(run, "--maps", "paper", "--policy", folder / "policy.safetensors", "--policy", "nearest", "--all-starts")
+    assert len(result["rows"]) == 20
+    row = result["rows"][10]
+    assert list(row) == "map policy valid_nodes budget episodes mean std best ci95 optimum paper".split()
+    assert row["map"] == "paper:a" and row["policy"] == "nearest" and result["rows"][0]["policy"] == "policy"
+    assert row["valid_nodes"] == 19 and row["episodes"] == 19 and row["budget"] == 25 and row["optimum"] == 100
+    assert row["mean"] == pytest.approx(95.3, abs=0.05)
+    assert row["ci95"][0] < row["mean"] < row["ci95"][1]
+    assert row["paper"] == {"mean": 89.8, "std": 8.3, "best": 100.0}
+    assert list(result["overall"][1]) == ["policy", "maps", "mean", "ratio_to_optimum"]
+    assert result["overall"][1]["mean"] == pytest.approx(98.9, abs=0.3)
+
+
+def test_evaluate_takes_ones_own_maps(run, tmp_path):
+    (tmp_path / "mine.txt").write_text("....\n.##.\n....\n")
+    (tmp_path / "other.txt").write_text("..\n")
+    result = evaluate(run, "--maps", tmp_path, "--maps", "paper:a", "--policy", "nearest", "--budget", "1.1x", "--episodes", "3")
+    assert [row["map"] for row in result["rows"]] == ["mine", "other", "paper:a"]
+    assert [row["budget"] for row in result["rows"]] == [11, 2, 20]
+    assert all(row["paper"] is None for row in result["rows"])
+    default = evaluate(run, "--maps", tmp_path / "other.txt")
+    assert [line["policy"] for line in default["overall"]] == ["random", "dfs", "nearest", "exact"]
+    assert default["rows"][0]["episodes"] == 30
+    single = evaluate(run, "--maps", tmp_path / "other.txt", "--policy", "nearest", "--episodes", "1")["rows"][0]
+    assert single["std"] is None and single["ci95"] is None
+
+
+def test_large_maps_have_no_optimum(run, tmp_path):
+    (tmp_path / "large.txt").write_text(("." * 12 + "\n") * 12)
+    result = evaluate(run, "--maps", tmp_path / "large.txt", "--budget", "1x", "--episodes", "4")
+    rows = {row["policy"]: row for row in result["rows"]}
+    assert all(row["optimum"] is None for row in rows.values())
+    assert rows["exact"]["mean"] is None and rows["nearest"]["mean"] > 50
+    assert result["overall"][3] == {"policy": "exact", "maps": 0, "mean": None, "ratio_to_optimum": None}
+
+
+def test_inspect_shows_tensors_features_and_q_values(run, trained):
+    folder, _ = trained
+    policy = folder / "policy.safetensors"
+    process = run("graphdrl", "inspect", policy, "--map", "paper:a", "--walk", "0,1,1,2", "--json")
+    result = json.loads(process.stdout)
+    assert result["parameters"] == 240_678
+    assert {tensor["name"]: tensor["shape"] for tensor in result["tensors"]} == {
+        name: list(values.shape) for name, values in read_safetensors(policy)[0].items()
+    }
+    steps = result["steps"]
+    assert [step["position"] for step in steps] == [0, 1, 1, 2]
+    assert steps[0]["legal"] == [False, False, True, True]
+    assert len(steps[0]["q"]) == 4 and len(steps[0]["features"]) == 25
+    assert steps[2]["features"][1] == [0, 1, 0, 2, 1, 2, 1]  # row, column, obstacle, visits, wall, unvisited neighbours, current
+    assert "240678 parameters" in run("graphdrl", "inspect", policy).stdout
+
+
+def test_maps_info_and_show(run, tmp_path):
+    assert json.loads(run("graphdrl", "maps", "info", "paper:a", "--json").stdout) == {
+        "map": "paper:a", "nodes": 25, "edges": 40, "directed": False, "weighted": False, "valid_nodes": 19, "components": 1,
+        "connected": True,
+    }  # fmt: skip
+    process = run("graphdrl", "maps", "show", "paper:a", "--walk", "0,1,2", "--svg", tmp_path / "a.svg")
+    assert process.returncode == 0
+    assert process.stdout.splitlines()[1:] == ["0 1 2 # .", ". # # # .", ". # . . .", ". # . . .", ". . . . ."]
+    assert (tmp_path / "a.svg").read_text().count("<circle") == 26
+    assert run("graphdrl", "maps", "show", "paper:a").stdout == "paper:a: 19 valid nodes\n" + MAP_A
+
+
+def bad_inputs(tmp_path, policy):
+    """Arguments, and what the one line must say."""
+    (tmp_path / "strange.txt").write_text("..x\n...\n")
+    (tmp_path / "ragged.txt").write_text("...\n..\n")
+    (tmp_path / "full.txt").write_text("##\n##\n")
+    content = policy.read_bytes()
+    (tmp_path / "cut.safetensors").write_bytes(content[:-1000])
+    (tmp_path / "shape.safetensors").write_bytes(content.replace(b"[192,64]", b"[64,192]", 1))
+    (tmp_path / "type.safetensors").write_bytes(content.replace(b'"F32"', b'"I32"', 1))
+    (tmp_path / "long.safetensors").write_bytes(b"\xff" * 8 + content[8:])
+    (tmp_path / "other.safetensors").write_bytes(content.replace(b'\\"kind\\":\\"paper\\"', b'\\"kind\\":\\"other\\"', 1))
+    (tmp_path / "config.json").write_text('{"episodes": 3, "speed": 9}')
+    (tmp_path / "broken.json").write_text('{"episodes": ')
+    (tmp_path / "file").write_text("")
+    evaluate_nearest = ["evaluate", "--policy", "nearest"]
+    return [
+        ([*evaluate_nearest, "--maps", tmp_path / "strange.txt"], "strange.txt:1:3: strange character"),
+        ([*evaluate_nearest, "--maps", tmp_path / "ragged.txt"], "ragged.txt:2: rows of unequal length"),
+        ([*evaluate_nearest, "--maps", tmp_path / "full.txt"], "no valid node"),
+        ([*evaluate_nearest, "--maps", tmp_path / "missing.txt"], "no such map"),
+        ([*evaluate_nearest, "--budget", "-1"], "bad budget"),
+        ([*evaluate_nearest, "--budget=-1"], "bad budget"),
+        ([*evaluate_nearest, "--budget", "lots"], "bad budget"),
+        ([*evaluate_nearest, "--budget", "nan"], "bad budget"),
+        ([*evaluate_nearest, "--episodes", "0"], "too few episodes"),
+        ([*evaluate_nearest, "--episodes", "some"], "--episodes"),
+        ([*evaluate_nearest, "--episodes", "3", "--all-starts"], "--all-starts"),
+        ([*evaluate_nearest, "--threads", "0"], "--threads"),
+        (["evaluate", "--policy", "magic"], "no such policy"),
+        (["evaluate", "--fast"], "--fast"),
+        (["evaluate", "--policy", tmp_path / "cut.safetensors"], "lies outside the file"),
+        (["evaluate", "--policy", tmp_path / "shape.safetensors"], "wrong shape: expected [192, 64], got [64, 192]"),
+        (["evaluate", "--policy", tmp_path / "type.safetensors"], "wrong type: expected F32, got I32"),
+        (["evaluate", "--policy", tmp_path / "long.safetensors"], "not a whole safetensors file"),
+        (["evaluate", "--policy", tmp_path / "other.safetensors"], "policy of another network"),
+        (["evaluate", "--policy", tmp_path], "cannot read the file"),
+        (["inspect", tmp_path / "cut.safetensors"], "lies outside the file"),
+        (["inspect", policy, "--map", "paper:a"], "--walk"),
+        (["inspect", policy, "--map", "paper:a", "--walk", "3"], "start on an obstacle"),
+        (["inspect", policy, "--map", "paper:a", "--walk", "0,2"], "no such step"),
+        (["inspect", policy, "--map", "paper", "--walk", "0"], "expected one map, got 10"),
+        (["maps", "show", "paper:a", "--walk", "0,25"], "no such step"),
+        (["maps", "show", "paper:a", "--walk", "0,b"], "--walk"),
+        (["maps", "show", "paper:a", "--svg", tmp_path / "nowhere" / "a.svg"], "cannot write the file"),
+        (["maps", "show", "paper:z"], "no such map"),
+        (["maps"], "subcommand"),
+        ([], "subcommand"),
+        (["train", "--episodes", "0", "--out", tmp_path / "new"], "--episodes"),
+        (["train", "--preset", "best", "--out", tmp_path / "new"], "--preset"),
+        (["train", "--swiftly"], "--swiftly"),
+        (["train", "--budget", "70000", "--out", tmp_path / "new"], "budget out of range"),
+        (["train", "--maps", tmp_path / "strange.txt", "--out", tmp_path / "new"], "strange character"),
+        (["train", "--out", tmp_path / "file" / "run"], "cannot create the folder"),
+        (["train", "--out", policy.parent], "holds a run already"),
+        (["train", "--resume", tmp_path / "nothing"], "cannot read the file"),
+        (["train", "--resume", policy.parent, "--seed", "3"], "--seed does not go with --resume"),
+        (["train", "--config", tmp_path / "config.json", "--out", tmp_path / "new"], "speed"),
+        (["train", "--config", tmp_path / "broken.json", "--out", tmp_path / "new"], "not valid JSON"),
+        (["train", "--config", tmp_path / "no.json", "--out", tmp_path / "new"], "no.json"),
+    ]
+
+
+def snapshot(folder):
+    return {path: (path.stat().st_mtime_ns, path.stat().st_size) for path in sorted(folder.rglob("*"))}
+
+
+def test_bad_input_is_one_line_and_status_2_and_changes_nothing(run, trained, tmp_path):
+    run_folder = tmp_path / "run"
+    shutil.copytree(trained[0], run_folder)
+    cases = bad_inputs(tmp_path, run_folder / "policy.safetensors")
+    before = snapshot(tmp_path)
+    for arguments, expected in cases:
+        process = run("graphdrl", *arguments, cwd=tmp_path)
+        assert process.returncode == 2, (arguments, process)
+        assert process.stdout == "", arguments
+        assert process.stderr.count("\n") == 1 and process.stderr.endswith("\n"), (arguments, process.stderr)
+        assert expected in process.stderr, (arguments, process.stderr)
+    assert snapshot(tmp_path) == before
+
+
+def test_config_reads_a_run_back(run, trained, tmp_path):
+    folder, _ = trained
+    process = run("graphdrl", "train", "--config", folder / "config.json", "--out", tmp_path / "again")
+    assert process.returncode == 0, process.stderr
+    assert (tmp_path / "again/config.json").read_bytes() == (folder / "config.json").read_bytes()
+    assert (tmp_path / "again/policy.safetensors").read_bytes() == (folder / "policy.safetensors").read_bytes()
+    (tmp_path / "lines.toml").write_text("episodes = 2\nmaps = ['paper:b', 'paper:c']\nend-at-full-coverage = true\n")
+    process = run("graphdrl", "train", "--config", tmp_path / "lines.toml", "--out", tmp_path / "lines")
+    assert process.returncode == 0, process.stderr
+    config = json.loads((tmp_path / "lines/config.json").read_text())
+    assert config["episodes"] == 2 and config["maps"] == ["paper:b", "paper:c"] and config["end_at_full_coverage"] is True
+
+
+@pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_interrupted_training_goes_on_where_it_was(run, trained, tmp_path, number, status):
+    whole, _ = trained
+    folder = tmp_path / "run"
+    command = [BIN / "graphdrl", "train", "--episodes", "25", "--out", folder]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while process.poll() is None and not (folder / "metrics.jsonl").exists():
+        time.sleep(0.05)
+    while process.poll() is None and not (folder / "metrics.jsonl").read_text():
+        time.sleep(0.05)
+    process.send_signal(number)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == status, errors
+    assert f"graphdrl train --resume {folder}" in errors
+    resumed = run("graphdrl", "train", "--resume", folder, "--json")
+    assert resumed.returncode == 0, resumed.stderr
+    assert json.loads(resumed.stdout)["episodes"] == 25
+    assert (folder / "policy.safetensors").read_bytes() == (whole / "policy.safetensors").read_bytes()
+    assert (folder / "metrics.jsonl").read_bytes() == (whole / "metrics.jsonl").read_bytes()
+
+
+def loaded_libraries(program):
+    output = subprocess.run(["ldd", BIN / program], capture_output=True, text=True, check=True).stdout
+    return dict(re.findall(r"(\S+) => (\S+)", output))
+
+
+def test_programs_load_openblas_openmp_and_graphdrl_no_libtorch():
+    small = loaded_libraries("graphdrl")
+    large = loaded_libraries("graphdrl-train")
+    assert not [name for name in small if "torch" in name]
+    assert [name for name in large if name.startswith("libtorch_cpu")]
+    for library in (small["libopenblas.so.0"], large["libopenblas.so.0"], large["libblas.so.3"], large["liblapack.so.3"]):
+        assert "openblas-openmp" in os.path.realpath(library)
+
+
+def test_broken_pipe_is_no_crash():
+    process = subprocess.run(f"{BIN / 'graphdrl'} evaluate --policy nearest | true", shell=True, capture_output=True, text=True, check=False)
+    assert process.returncode == 0

@@ -1,0 +1,122 @@
+// Computes Q-values, targets, loss and every gradient of one learning step on random states of several maps, and writes
+// them with everything they depend on to a safetensors file, for a PyTorch model to compute again.
+//   learning_step_probe OUT [--double-dqn]
+#include <torch/torch.h>
+
+#include <string_view>
+
+#include "graphdrl/env/episode.h"
+#include "graphdrl/io/map_source.h"
+#include "graphdrl/nn/features.h"
+#include "graphdrl/train/learner.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr double kDiscount = 0.99;
+
+// Another network's values with batch norm statistics that are not the initial ones, so that none of them cancels out.
+void disturb(QNetwork& network, Rng& rng) {
+  PaperParameters other(rng);
+  for (const TensorSpec& spec : PaperParameters::specs()) {
+    float* const values = network.parameters().tensor(spec.name);
+    for (std::size_t i = 0; i < spec.size; ++i) {
+      values[i] = other.values()[spec.offset + i];
+      if (spec.name.starts_with("bn")) values[i] += 0.5f * static_cast<float>(rng.uniform());
+    }
+  }
+  network.update();
+}
+
+struct Edges {
+  std::vector<std::int64_t> from;
+  std::vector<std::int64_t> to;
+};
+
+int write_probe(const std::string& out, bool double_dqn) {
+  Rng rng(42);
+  std::vector<World> worlds;
+  for (const NamedMap& named : load_maps("paper")) worlds.emplace_back(named.name, named.map);
+  worlds.emplace_back("wide", GridMap{.rows = 3, .cols = 9, .blocked = std::vector<bool>(27)});
+  worlds.emplace_back("large", GridMap{.rows = 11, .cols = 11, .blocked = std::vector<bool>(121)});
+
+  Minibatch batch;
+  batch.graphs.clear();
+  Edges edges;
+  std::vector<std::int64_t> first_nodes = {0};
+  for (int i = 0; i < 32; ++i) {
+    const World& world = worlds[static_cast<std::size_t>(i) % worlds.size()];
+    const FeatureEncoder encoder(world);
+    Episode episode(world, {.budget = 40, .end_at_full_coverage = true});
+    episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
+    for (std::uint32_t steps = rng.below(25); steps > 0; --steps) episode.step(static_cast<int>(rng.below(4)));
+    const std::size_t row = batch.x.size();
+    const std::size_t size = episode.visits().size() * kFeatureCount;
+    batch.x.resize(row + size);
+    batch.next_x.resize(row + size);
+    encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.x).subspan(row));
+    batch.actions.push_back(rng.below(4));
+    batch.rewards.push_back(static_cast<float>(episode.step(static_cast<int>(batch.actions.back())).reward));
+    batch.terminal.push_back(i % 7 == 3);
+    encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.next_x).subspan(row));
+    for (NodeId node = 0; node < world.graph().node_count(); ++node) {
+      for (const NodeId next : world.graph().neighbours(node)) {
+        edges.from.push_back(first_nodes.back() + next);
+        edges.to.push_back(first_nodes.back() + node);
+      }
+    }
+    batch.graphs.add(world.graph());
+    first_nodes.push_back(batch.graphs.node_count());
+  }
+
+  Learner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);
+  disturb(learner.online(), rng);
+  disturb(learner.target(), rng);
+  std::vector<float> q(batch.actions.size() * kActionCount);
+  learner.online().q_values(batch.graphs, batch.x, q);
+  const PaperParameters online = learner.online().parameters();  // before the running statistics move
+  const torch::Tensor keep_scale = draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, 0.5, rng);
+  const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
+  PaperParameters grad;
+  const torch::Tensor& flat = learner.online().trainable().grad();
+  std::copy_n(flat.data_ptr<float>(), flat.numel(), grad.values().begin());
+
+  const auto n = static_cast<std::int64_t>(batch.graphs.node_count());
+  const auto b = static_cast<std::int64_t>(batch.graphs.graph_count());
+  const auto e = static_cast<std::int64_t>(edges.from.size());
+  const std::vector<std::int64_t> terminal(batch.terminal.begin(), batch.terminal.end());
+  const std::vector<double> discount = {kDiscount};
+  std::vector<TensorView> tensors;
+  const auto add = [&]<typename T>(const char* name, Shape shape, const std::vector<T>& values) {
+    tensors.emplace_back(name, std::move(shape), std::span<const T>(values));
+  };
+  add("x", {n, kFeatureCount}, batch.x);
+  add("next_x", {n, kFeatureCount}, batch.next_x);
+  add("edges.from", {e}, edges.from);
+  add("edges.to", {e}, edges.to);
+  add("first_nodes", {b + 1}, first_nodes);
+  add("actions", {b}, batch.actions);
+  add("rewards", {b}, batch.rewards);
+  add("terminal", {b}, terminal);
+  add("discount", {1}, discount);
+  tensors.emplace_back(
+      "keep_scale", Shape{b, kHiddenWidth},
+      std::span<const float>(keep_scale.data_ptr<float>(), static_cast<std::size_t>(keep_scale.numel())));
+  add("q", {b, kActionCount}, q);
+  add("loss", {1}, loss);
+  for (const auto& [prefix, parameters] : {std::pair("online.", &online), std::pair("grad.", &std::as_const(grad)),
+                                           std::pair("target.", &std::as_const(learner.target().parameters())),
+                                           std::pair("after.", &std::as_const(learner.online().parameters()))}) {
+    for (const TensorView& view : parameters->views(prefix)) tensors.push_back(view);
+  }
+  write_safetensors(out, tensors, {});
+  return 0;
+}
+
+}  // namespace
+}  // namespace graphdrl
+
+int main(int argc, char** argv) {
+  if (argc < 2) return 2;
+  return graphdrl::write_probe(argv[1], argc > 2 && std::string_view(argv[2]) == "--double-dqn");
+}
