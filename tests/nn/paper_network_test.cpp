@@ -6,6 +6,7 @@
 #include <map>
 
 #include "graphdrl/io/file.h"
+#include "graphdrl/nn/features.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -61,8 +62,8 @@ TEST(PaperNetwork, GivesABatchWhatItGivesEachGraphAlone) {
     batch.add(graph);
     GraphBatch single;
     single.add(graph);
-    std::vector<float> own(static_cast<std::size_t>(graph.node_count()) * 7);
-    for (float& value : own) value = static_cast<float>(rng.below(5));
+    std::vector<float> own;
+    for (int i = 0; i < graph.node_count() * kFeatureCount; ++i) own.push_back(static_cast<float>(rng.below(5)));
     std::array<float, 4> q{};
     network.q_values(single, own, q);
     expected.insert(expected.end(), q.begin(), q.end());
