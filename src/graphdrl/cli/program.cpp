@@ -26,8 +26,12 @@ int run_program(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::CallForHelp&) {
     // The help of the command asked about, not of the whole program.
     const CLI::App* asked = &app;
-    while (!asked->get_subcommands().empty()) asked = asked->get_subcommands().front();
-    fmt::print("{}", asked->help(asked == &app ? "" : asked->get_parent()->get_name() + " " + asked->get_name()));
+    std::string parents;
+    while (!asked->get_subcommands().empty()) {
+      parents += (parents.empty() ? "" : " ") + asked->get_name();
+      asked = asked->get_subcommands().front();
+    }
+    fmt::print("{}", asked->help(parents));
     return kExitDone;
   } catch (const CLI::CallForVersion& call) {
     fmt::print("{}\n", call.what());
