@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <set>
 
 namespace graphdrl {
 namespace {
@@ -21,6 +22,17 @@ TEST(Rng, GoesOnFromItsState) {
   rng.next();
   Rng copy(rng.state());
   for (int i = 0; i < 10; ++i) EXPECT_EQ(copy.next(), rng.next());
+}
+
+TEST(DeriveSeed, GivesEveryPurposeItsOwn) {
+  EXPECT_EQ(derive_seed(1, 2, 3), derive_seed(1, 2, 3));
+  std::set<std::uint64_t> seeds;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    for (std::uint64_t purpose = 0; purpose < 10; ++purpose) {
+      for (std::uint64_t index = 0; index < 10; ++index) seeds.insert(derive_seed(seed, purpose, index));
+    }
+  }
+  EXPECT_EQ(seeds.size(), 1000u);
 }
 
 TEST(Rng, BelowIsUniform) {

@@ -56,11 +56,14 @@ TEST(Episode, RewardsAsEquation2) {
   const World world = corner();
   Episode episode(world, {.budget = 8, .reward = RewardKind::kCoverageGain});
   episode.reset(0);
-  EXPECT_DOUBLE_EQ(episode.step(kUp).reward, 0);
-  EXPECT_DOUBLE_EQ(episode.step(kRight).reward, 1.0 / 3);
-  EXPECT_DOUBLE_EQ(episode.step(kLeft).reward, 0);
-  // Over an episode, the rewards add up to the coverage gained [paper, eq. 1 and 2].
-  EXPECT_DOUBLE_EQ(1.0 / 3 + 1.0 / 3, episode.coverage());
+  double sum = 0;
+  for (const auto& [action, reward] : {std::pair(kUp, 0.0), {kRight, 1.0 / 3}, {kLeft, 0.0}}) {
+    const StepResult step = episode.step(action);
+    EXPECT_DOUBLE_EQ(step.reward, reward);
+    sum += step.reward;
+  }
+  // Over an episode, the rewards add up to the coverage gained since the start [paper, eq. 1 and 2].
+  EXPECT_DOUBLE_EQ(sum, episode.coverage() - 1.0 / 3);
 }
 
 TEST(Episode, GoesOnAfterFullCoverageUntilTheBudgetIsSpent) {
@@ -106,7 +109,28 @@ TEST(Episode, WalksAnyGraphByNeighbours) {
   EXPECT_EQ(episode.observation().action_count(), 2);  // 2 and 3; 1 is blocked
   episode.step(1);
   EXPECT_EQ(episode.position(), 3);
-  EXPECT_EQ(action_to(episode.observation(), 2), 1);
+  EXPECT_EQ(episode.observation().action_to(2), 1);
+  EXPECT_EQ(episode.observation().action_to(1), kNoAction);
+}
+
+TEST(Observation, MasksBlockedMovesForThoseWhoAsk) {
+  const World world = corner();
+  Episode episode(world, {});
+  episode.reset(0);
+  const Observation observation = episode.observation();
+  EXPECT_EQ(observation.action_count(), 4);
+  EXPECT_FALSE(observation.legal(kLeft));
+  EXPECT_FALSE(observation.legal(kUp));
+  EXPECT_TRUE(observation.legal(kRight));
+  EXPECT_FALSE(observation.legal(kDown));
+  EXPECT_EQ(observation.target(kRight), 1);
+  EXPECT_EQ(observation.target(kDown), 0);
+  EXPECT_EQ(observation.action_to(0), kLeft);
+  Episode by_neighbours(world, {.action_space = ActionSpace::kNeighbours});
+  by_neighbours.reset(1);
+  EXPECT_EQ(by_neighbours.observation().action_count(), 2);
+  EXPECT_TRUE(by_neighbours.observation().legal(0));
+  EXPECT_TRUE(by_neighbours.observation().legal(1));
 }
 
 TEST(Episode, EndsWhereThereIsNowhereToGo) {

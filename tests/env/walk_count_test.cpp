@@ -41,8 +41,9 @@ std::vector<std::uint64_t> matrix_power_row_sums(NodeId nodes, const std::vector
   return sums;
 }
 
-void expect_walk_counts(NodeId nodes, const std::vector<Edge>& edges, const std::vector<bool>& blocked) {
-  const World world("graph", Graph::from_edges(nodes, edges), blocked);
+void expect_walk_counts(const World& world, const std::vector<Edge>& edges) {
+  const NodeId nodes = world.graph().node_count();
+  const std::vector<bool>& blocked = world.blocked();
   for (int length = 0; length <= kMaxLength; ++length) {
     const auto expected = matrix_power_row_sums(nodes, edges, blocked, length);
     for (const NodeId start : world.valid_nodes()) {
@@ -52,25 +53,34 @@ void expect_walk_counts(NodeId nodes, const std::vector<Edge>& edges, const std:
   }
 }
 
+World world_of(NodeId nodes, const std::vector<Edge>& edges, std::vector<bool> blocked = {}) {
+  blocked.resize(nodes);
+  return World("graph", Graph::from_edges(nodes, edges), blocked);
+}
+
 TEST(WalkCount, Path) {
-  expect_walk_counts(4, {{0, 1}, {1, 2}, {2, 3}}, std::vector<bool>(4));
+  const std::vector<Edge> edges = {{0, 1}, {1, 2}, {2, 3}};
+  expect_walk_counts(world_of(4, edges), edges);
 }
 
 TEST(WalkCount, Cycle) {
-  expect_walk_counts(5, {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 0}}, std::vector<bool>(5));
+  const std::vector<Edge> edges = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 0}};
+  expect_walk_counts(world_of(5, edges), edges);
 }
 
 TEST(WalkCount, Complete) {
-  expect_walk_counts(4, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}, std::vector<bool>(4));
+  const std::vector<Edge> edges = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+  expect_walk_counts(world_of(4, edges), edges);
 }
 
 TEST(WalkCount, StarWithABlockedLeaf) {
-  expect_walk_counts(5, {{0, 1}, {0, 2}, {0, 3}, {0, 4}}, {false, false, true, false, false});
+  const std::vector<Edge> edges = {{0, 1}, {0, 2}, {0, 3}, {0, 4}};
+  expect_walk_counts(world_of(5, edges, {false, false, true}), edges);
 }
 
-TEST(WalkCount, GridWithAnObstacle) {
-  expect_walk_counts(6, {{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 3}, {1, 4}, {2, 5}},
-                     {false, false, false, true, false, false});
+TEST(WalkCount, GridMapWithAnObstacle) {
+  const std::vector<Edge> edges = {{0, 1}, {1, 2}, {3, 4}, {4, 5}, {0, 3}, {1, 4}, {2, 5}};
+  expect_walk_counts(grid_world("...\n#..\n"), edges);
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "graphdrl/io/map_source.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/nn/paper_network.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -11,9 +12,7 @@ namespace {
 using ::testing::HasSubstr;
 
 std::vector<World> paper_worlds() {
-  std::vector<World> worlds;
-  for (const NamedMap& named : load_maps("paper")) worlds.emplace_back(named.name, named.map);
-  return worlds;
+  return load_worlds({"paper"});
 }
 
 // The figures were computed independently, with the same tie rules.
@@ -50,6 +49,29 @@ TEST(Compare, IsTheSameForTheSameSeedAndStartsEveryPolicyAlike) {
     EXPECT_EQ(once.rows[map].coverage->mean, once.rows[20 + map].coverage->mean);
     EXPECT_EQ(once.rows[map].episodes, 7);
   }
+}
+
+TEST(Compare, GivesAMapTheSameFiguresWhateverPoliciesStandBeside) {
+  std::vector<World> worlds = paper_worlds();
+  const Comparison alone = compare(worlds, {.policies = {"random"}});
+  const Comparison among = compare(worlds, {.policies = {"random-walk", "nearest", "random"}});
+  for (std::size_t map = 0; map < worlds.size(); ++map) {
+    EXPECT_EQ(alone.rows[map].coverage->mean, among.rows[20 + map].coverage->mean);
+  }
+}
+
+TEST(Compare, NamesPoliciesOfOneStemByTheirPaths) {
+  const TemporaryFolder folder;
+  std::vector<std::string> files;
+  for (const char* name : {"one", "two"}) {
+    std::filesystem::create_directory(folder / name);
+    files.push_back((folder / name / "policy.safetensors").string());
+    write_policy_file(files.back(), PaperParameters());
+  }
+  const Comparison both = compare(paper_worlds(), {.policies = files, .episodes = 1});
+  EXPECT_EQ(both.overall[0].policy, files[0]);
+  EXPECT_EQ(both.overall[1].policy, files[1]);
+  EXPECT_EQ(compare(paper_worlds(), {.policies = {files[0]}, .episodes = 1}).overall[0].policy, "policy");
 }
 
 TEST(Compare, LeavesOutWhatIsOutOfReach) {

@@ -25,6 +25,17 @@ TEST(WriteFile, KeepsTheOldFileWhenItFails) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
+TEST(WriteFile, FollowsALinkAndLeavesSpecialFilesAlone) {
+  const TemporaryFolder folder;
+  write_file(folder / "file", "old");
+  std::filesystem::create_symlink(folder / "file", folder / "link");
+  write_file(folder / "link", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(read_file(folder / "file"), "new");
+  EXPECT_NE(error_of([] { write_file("/dev/null", "text"); }), "");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
 TEST(ReadFile, RefusesWhatIsNoFile) {
   const TemporaryFolder folder;
   EXPECT_NE(error_of([&] { read_file(folder.path()); }), "");

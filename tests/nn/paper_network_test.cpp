@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "graphdrl/io/file.h"
 #include "graphdrl/nn/features.h"
@@ -34,9 +36,12 @@ TEST(PaperNetwork, CountsTheParametersOfTable1) {
 TEST(PaperNetwork, StartsAsPyTorchDoes) {
   const PaperParameters parameters = some_parameters();
   const auto largest = [&](const std::string& name, std::size_t size) {
-    float result = 0;
-    for (std::size_t i = 0; i < size; ++i) result = std::max(result, std::abs(parameters.tensor(name)[i]));
-    return result;
+    const std::span values(parameters.tensor(name), size);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    EXPECT_NEAR(-*low, *high, 1e-3) << name;
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(size);
+    EXPECT_NEAR(mean, 0, 4 * *high / std::sqrt(3.0 * static_cast<double>(size))) << name;
+    return *high;
   };
   // Uniform within ± a bound: the largest of many values is just below it.
   EXPECT_NEAR(largest("conv3.weight", 4 * 128 * 128), 1 / std::sqrt(128.0f), 1e-4);
@@ -108,6 +113,12 @@ TEST(PolicyFile, IsRefusedWhenItIsAnothersOrDamaged) {
   EXPECT_THAT(error_for(replaced("\\\"width\\\":64", "\\\"width\\\":63")), HasSubstr("policy of another network"));
   EXPECT_THAT(error_for(replaced("\"network\"", "\"notwork\"")), HasSubstr("not a policy file"));
   EXPECT_THAT(error_for(""), HasSubstr("not a safetensors file"));
+
+  PaperParameters broken = parameters;
+  broken.tensor("fc1.bias")[3] = NAN;
+  write_policy_file(folder / "nan", broken);
+  EXPECT_THAT(error_of([&] { read_policy_file(folder / "nan"); }),
+              HasSubstr("'fc1.bias' holds a value that no network"));
 
   std::vector<TensorView> more = parameters.views();
   const std::vector<float> extra = {1};

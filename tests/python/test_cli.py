@@ -142,6 +142,15 @@ def bad_inputs(tmp_path, policy):
         (["maps", "show", "paper:a", "--walk", "0,b"], "--walk"),
         (["maps", "show", "paper:a", "--svg", tmp_path / "nowhere" / "a.svg"], "cannot write the file"),
         (["maps", "show", "paper:z"], "no such map"),
+        (["maps", "show", "paper:a", "--walk", ""], "--walk"),
+        (["maps", "show", "paper:a", "--svg", "/dev/null"], "something else stands there"),
+        ([*evaluate_nearest, "--seed", "-1"], "--seed"),
+        ([*evaluate_nearest, "--budget", "1e12"], "bad budget"),
+        ([*evaluate_nearest, "--\x1b[31m"], "\\x1b[31m"),
+        (["train", "--resume", ""], "--resume"),
+        (["train", "--out", ""], "--out"),
+        (["train", "--start", "3", "--out", tmp_path / "new"], "start on an obstacle"),
+        (["train", "--seed", "-1", "--out", tmp_path / "new"], "--seed"),
         (["maps"], "subcommand"),
         ([], "subcommand"),
         (["train", "--episodes", "0", "--out", tmp_path / "new"], "--episodes"),
@@ -225,6 +234,18 @@ def test_programs_load_openblas_openmp_and_graphdrl_no_libtorch():
         assert "openblas-openmp" in os.path.realpath(library)
 
 
-def test_broken_pipe_is_no_crash():
-    process = subprocess.run(f"{BIN / 'graphdrl'} evaluate --policy nearest | true", shell=True, capture_output=True, text=True, check=False)
-    assert process.returncode == 0
+def test_closed_streams_are_no_crash():
+    def status(command):
+        return subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False).stdout.split()[-1]
+
+    graphdrl = BIN / "graphdrl"
+    assert status(f"{graphdrl} evaluate --policy nearest | true; echo ${{PIPESTATUS[0]}}") == "2"
+    assert status(f"{graphdrl} evaluate --fast 2>&-; echo $?") == "2"
+    assert status(f"{graphdrl} evaluate --policy nearest >/dev/full; echo $?") == "2"
+
+
+def test_network_policies_take_large_maps(run, trained, tmp_path):
+    (tmp_path / "large.txt").write_text(("." * 70 + "\n") * 70)
+    policy = trained[0] / "policy.safetensors"
+    result = evaluate(run, "--maps", tmp_path / "large.txt", "--policy", policy, "--budget", "1", "--episodes", "5")
+    assert result["rows"][0]["valid_nodes"] == 4900

@@ -1,5 +1,7 @@
 """The paper's network and learning step, written again in plain PyTorch: the same weights must give the same numbers."""
 
+import json
+
 import pytest
 import torch
 import torch.nn.functional as F
@@ -71,11 +73,19 @@ def test_learning_step(run, tmp_path, algorithm):
             assert relative_error(after[name], online[name]) < 1e-5, name
 
 
-def test_policy_file_loads_into_pytorch(trained):
+def test_policy_file_is_a_state_dict(run, trained):
+    """A PyTorch model with the file's tensors gives the Q-values that `inspect` shows."""
     folder, _ = trained
     tensors, metadata = read_safetensors(folder / "policy.safetensors")
-    assert len(tensors) == 27
-    assert all(values.dtype == "float32" for values in tensors.values())
-    assert tensors["conv2.weight"].shape == (4, 64, 64)
-    assert tensors["fc2.weight"].shape == (4, 256)
     assert '"kind":"paper"' in metadata["network"]
+    assert len(tensors) == 27
+    p = {name: torch.from_numpy(values) for name, values in tensors.items()}
+    assert all(tensor.dtype == torch.float32 for tensor in p.values())
+    arguments = ["--map", "paper:h", "--walk", "0,0,5,10", "--json"]
+    steps = json.loads(run("graphdrl", "inspect", folder / "policy.safetensors", *arguments).stdout)["steps"]
+    pairs = [(r * 5 + c, s * 5 + d) for r in range(5) for c in range(5) for s in range(5) for d in range(5) if abs(r - s) + abs(c - d) == 1]
+    edges = {"to": torch.tensor([a for a, _ in pairs]), "from": torch.tensor([b for _, b in pairs])}
+    for step in steps:
+        features = torch.tensor(step["features"], dtype=torch.float32)
+        q = q_values(p, features, edges, torch.zeros(25, dtype=torch.long), 1, training=False, keep_scale=1.0)
+        assert relative_error(torch.tensor(step["q"]), q[0]) < 1e-4

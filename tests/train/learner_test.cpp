@@ -32,12 +32,13 @@ TEST(KeepScale, DropsItsShareAndKeepsTheMean) {
   EXPECT_TRUE((draw_keep_scale(2, 3, 0, rng) == 1).all().item<bool>());
 }
 
-// Every state of a 2×2 map that its first `length` moves reach, with every action from it.
+// A map of four nodes.
 struct TinyWorld {
   World world = grid_world("..\n..\n");
   FeatureEncoder encoder{world};
 };
 
+// Adds the transition of `action` after `actions` from node 0.
 void add_transition(const TinyWorld& tiny, const std::vector<int>& actions, int action, Minibatch& batch) {
   Episode episode(tiny.world, {.budget = 9, .end_at_full_coverage = true});
   episode.reset(0);

@@ -61,7 +61,7 @@ TEST(ReplayBuffer, IsADequeOfItsCapacityAndSurvivesACheckpoint) {
     buffer.save(packed, tensors);
     write_safetensors(folder / "c", tensors, {});
     ReplayBuffer restored(kCapacity, kNodes);
-    restored.restore(Safetensors::read(folder / "c"));
+    restored.restore(Safetensors::read(folder / "c"), [](const Transition&) { return true; });
     buffer = restored;  // and all goes on from there
   }
 }
@@ -75,9 +75,11 @@ TEST(ReplayBuffer, RefusesACheckpointThatDoesNotFit) {
   buffer.save(packed, tensors);
   write_safetensors(folder / "c", tensors, {});
   const Safetensors file = Safetensors::read(folder / "c");
-  EXPECT_NE(error_of([&] { ReplayBuffer(3, 3).restore(file); }), "");
-  EXPECT_NE(error_of([&] { ReplayBuffer(4, 2).restore(file); }), "");
-  EXPECT_EQ(error_of([&] { ReplayBuffer(4, 3).restore(file); }), "");
+  const auto any = [](const Transition&) { return true; };
+  EXPECT_NE(error_of([&] { ReplayBuffer(3, 3).restore(file, any); }), "");
+  EXPECT_NE(error_of([&] { ReplayBuffer(4, 2).restore(file, any); }), "");
+  EXPECT_EQ(error_of([&] { ReplayBuffer(4, 3).restore(file, any); }), "");
+  EXPECT_NE(error_of([&] { ReplayBuffer(4, 3).restore(file, [](const Transition&) { return false; }); }), "");
 }
 
 TEST(EpsilonSchedule, RunsFromTheFirstEpisodeToTheLast) {

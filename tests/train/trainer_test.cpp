@@ -68,7 +68,7 @@ TEST(Trainer, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(Trainer, EndsWithTheSameBytesHoweverOftenItIsInterrupted) {
   const TemporaryFolder folder;
   TrainOptions options = short_training();
-  options.algorithm = "double-dqn";
+  options.algorithm = "double_dqn";
   const RunDirectory whole(folder / "whole");
   train(*Trainer::start(options, whole));
 
@@ -99,6 +99,16 @@ TEST(Trainer, RefusesADirectoryThatHoldsARunAndDamagedOnes) {
   write_file(run.checkpoint(), checkpoint.substr(0, checkpoint.size() / 2));
   EXPECT_THAT(error_of([&] { Trainer::resume(run); }), HasSubstr("checkpoint.safetensors"));
   write_file(run.checkpoint(), checkpoint);
+  Rng rng(9);
+  for (int i = 0; i < 60; ++i) {  // damage is an Error, or a run that can go on
+    std::string damaged = checkpoint;
+    const std::size_t header = i % 2 == 0 ? 4'000 : damaged.size();
+    for (int n = 0; n < 4; ++n)
+      damaged[rng.below(static_cast<std::uint32_t>(header))] = static_cast<char>(rng.below(256));
+    write_file(run.checkpoint(), damaged);
+    error_of([&] { Trainer::resume(run); });
+  }
+  write_file(run.checkpoint(), checkpoint);
   const std::string config = read_file(run.config());
   write_file(run.config(), "{}");
   EXPECT_THAT(error_of([&] { Trainer::resume(run); }), HasSubstr("missing key 'preset'"));
@@ -108,6 +118,37 @@ TEST(Trainer, RefusesADirectoryThatHoldsARunAndDamagedOnes) {
 
   write_file(folder / "file", "");
   EXPECT_NE(error_of([&] { Trainer::start(options, RunDirectory(folder / "file/run")); }), "");
+}
+
+// A crash leaves an older checkpoint beside newer metrics.
+TEST(Trainer, GoesOnFromAnOlderCheckpoint) {
+  const TemporaryFolder folder;
+  TrainOptions options = short_training();
+  options.episodes = 24;
+  const RunDirectory run(folder / "run");
+  const auto trainer = Trainer::start(options, run);
+  const Silence silence;
+  ProgressDisplay display(silence.file, 0);
+  trainer->run([steps = 0]() mutable { return steps++ == 70; }, display);
+  const std::string old_checkpoint = read_file(run.checkpoint());
+  train(*Trainer::resume(run));
+  const Bytes whole = bytes_of(run);
+  write_file(run.checkpoint(), old_checkpoint);
+  train(*Trainer::resume(run));
+  EXPECT_TRUE(bytes_of(run).policy == whole.policy);
+  EXPECT_EQ(bytes_of(run).metrics, whole.metrics);
+}
+
+TEST(Trainer, RemembersItsMaps) {
+  const TemporaryFolder folder;
+  TrainOptions options = short_training();
+  write_file(folder / "map.txt", "....\n.#..\n");
+  options.maps = {(folder / "map.txt").string()};
+  options.start = "1,2";
+  const RunDirectory run(folder / "run");
+  Trainer::start(options, run);
+  write_file(folder / "map.txt", "gone");
+  train(*Trainer::resume(run));
 }
 
 TEST(TrainOptions, AreChecked) {
@@ -124,6 +165,11 @@ TEST(TrainOptions, AreChecked) {
   EXPECT_THAT(error_for([](TrainOptions& o) { o.replay_capacity = 32; }), HasSubstr("--replay-capacity"));
   EXPECT_THAT(error_for([](TrainOptions& o) { o.learning_rate = NAN; }), HasSubstr("--learning-rate"));
   EXPECT_THAT(error_for([](TrainOptions& o) { o.budget = "-3"; }), HasSubstr("bad budget"));
+  EXPECT_THAT(error_for([](TrainOptions& o) {
+                o.reward = "coverage_gain";
+                o.punish_blocked_by_visits = true;
+              }),
+              HasSubstr("--punish-blocked-by-visits"));
 }
 
 TEST(TrainOptions, SurviveTheConfigurationFile) {

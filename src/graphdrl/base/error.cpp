@@ -5,7 +5,17 @@
 namespace graphdrl {
 namespace {
 
-// The part on one line: a path or a name may hold line breaks and terminal codes.
+std::string one_line(const ErrorParts& parts) {
+  std::string line;
+  if (!parts.where.empty()) line += parts.where + ": ";
+  line += parts.what;
+  if (!parts.expected.empty()) line += ": expected " + parts.expected;
+  if (!parts.got.empty()) line += (parts.expected.empty() ? ": got " : ", got ") + parts.got;
+  return escaped(line);
+}
+
+}  // namespace
+
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -18,17 +28,6 @@ std::string escaped(std::string_view text) {
   }
   return result;
 }
-
-std::string one_line(const ErrorParts& parts) {
-  std::string line;
-  if (!parts.where.empty()) line += parts.where + ": ";
-  line += parts.what;
-  if (!parts.expected.empty()) line += ": expected " + parts.expected;
-  if (!parts.got.empty()) line += (parts.expected.empty() ? ": got " : ", got ") + parts.got;
-  return escaped(line);
-}
-
-}  // namespace
 
 Error::Error(const ErrorParts& parts) : std::runtime_error(one_line(parts)) {}
 

@@ -21,6 +21,9 @@ class Error : public std::runtime_error {
   explicit Error(const ErrorParts& parts);
 };
 
+// `text` on one line: a path or a name may hold line breaks and terminal codes.
+std::string escaped(std::string_view text);
+
 // `text` in quotes, unprintable bytes escaped, cut to `max_length` characters.
 std::string in_quotes(std::string_view text, std::size_t max_length = 60);
 

@@ -12,6 +12,7 @@ class Rng {
   using State = std::array<std::uint64_t, 4>;
 
   explicit Rng(std::uint64_t seed);
+  // REQUIRES: state is not all 0, from which nothing else would follow.
   explicit Rng(const State& state) : state_(state) {}
 
   std::uint64_t next();
@@ -23,5 +24,8 @@ class Rng {
  private:
   State state_;
 };
+
+// A seed for one purpose of many that share a user's seed; its numbers have nothing to do with those of any other.
+std::uint64_t derive_seed(std::uint64_t seed, std::uint64_t purpose, std::uint64_t index = 0);
 
 }  // namespace graphdrl

@@ -2,8 +2,9 @@
 
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/comparison.h"
-#include "graphdrl/io/map_source.h"
+#include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
 namespace {
@@ -49,11 +50,7 @@ void evaluate(const EvaluateOptions& options) {
   ComparisonOptions comparison = options.comparison;
   comparison.policies = options.policies;
   comparison.budget = Budget::parse(options.budget);
-  std::vector<World> worlds;
-  for (const std::string& source : options.maps) {
-    for (const NamedMap& named : load_maps(source)) worlds.emplace_back(named.name, named.map);
-  }
-  const Comparison result = compare(worlds, comparison);
+  const Comparison result = compare(load_worlds(options.maps), comparison);
   if (options.json) {
     print_json(to_json(result));
   } else {
@@ -67,9 +64,7 @@ void add_evaluate_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("evaluate", "Compare policies on maps: the paper's Table 2 and the optimum");
   const auto options = std::make_shared<EvaluateOptions>();
-  command
-      ->add_option("--policy", options->policies,
-                   "random, random-walk, dfs, nearest, exact, or a policy file; may be given again")
+  command->add_option("--policy", options->policies, policy_names() + "; may be given again")
       ->type_name("P")
       ->capture_default_str();
   command->add_option("--maps", options->maps, "paper, paper:a to paper:j, a file, or a folder; may be given again")
@@ -85,6 +80,7 @@ void add_evaluate_command(CLI::App& app) {
   command->add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
       ->excludes(episodes);
   command->add_option("--seed", options->comparison.seed, "For the starts and for random policies")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);

@@ -4,8 +4,8 @@
 
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
-#include "graphdrl/io/map_source.h"
 #include "graphdrl/planners/network_policy.h"
 
 namespace graphdrl {
@@ -27,8 +27,7 @@ struct InspectedStep {
 };
 
 std::vector<InspectedStep> inspect_walk(NetworkPolicy& policy, const InspectOptions& options) {
-  const NamedMap named = load_map(options.map);
-  const World world(named.name, named.map);
+  const World world = load_one_world(options.map);
   Episode episode(world, {.budget = static_cast<double>(options.walk.size())});
   std::vector<InspectedStep> steps;
   follow_walk(episode, options.walk, [&](const Observation& observation) {
@@ -37,7 +36,7 @@ std::vector<InspectedStep> inspect_walk(NetworkPolicy& policy, const InspectOpti
     policy.encoder_for(world).encode(observation.position, observation.visits, std::span(step.features));
     policy.q_values({&observation, 1}, step.q);
     for (int action = 0; action < kActionCount; ++action) {
-      step.legal[action] = world.direction_target(observation.position, action) != observation.position;
+      step.legal[action] = observation.legal(action);
     }
     steps.push_back(std::move(step));
   });
@@ -118,6 +117,7 @@ void add_inspect_command(CLI::App& app) {
   CLI::Option* const map = command->add_option("--map", options->map, "The map to walk on")->type_name("M");
   command->add_option("--walk", options->walk, "Node ids, as 0,1,1,2; a repeated id is a blocked move")
       ->delimiter(',')
+      ->check(not_empty())
       ->type_name("IDS")
       ->needs(map);
   map->needs(command->get_option("--walk"));

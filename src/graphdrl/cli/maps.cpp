@@ -5,10 +5,10 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
 #include "graphdrl/graph/search.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/map_source.h"
 #include "graphdrl/report/map_drawing.h"
 
 namespace graphdrl {
@@ -23,8 +23,7 @@ struct MapsOptions {
 
 void show_info(const MapsOptions& options) {
   Json maps = Json::array();
-  for (const NamedMap& named : load_maps(options.map)) {
-    const World world(named.name, named.map);
+  for (const World& world : load_worlds({options.map})) {
     const int components = count_components(world.graph(), world.blocked());
     maps.push_back({{"map", world.name()},
                     {"nodes", world.graph().node_count()},
@@ -48,8 +47,7 @@ void show_info(const MapsOptions& options) {
 }
 
 void show_map(const MapsOptions& options) {
-  std::vector<World> worlds;
-  for (const NamedMap& named : load_maps(options.map)) worlds.emplace_back(named.name, named.map);
+  const std::vector<World> worlds = load_worlds({options.map});
   if (worlds.size() > 1 && (!options.walk.empty() || !options.svg.empty())) {
     throw Error({.what = "a walk or a picture needs one map",
                  .expected = "one map",
@@ -91,6 +89,7 @@ void add_maps_command(CLI::App& app) {
   CLI::App* const show = add("show", "Draw a map, and a walk on it");
   show->add_option("--walk", options->walk, "Node ids, as 0,1,1,2; a repeated id is a blocked move")
       ->delimiter(',')
+      ->check(not_empty())
       ->type_name("IDS");
   show->add_option("--svg", options->svg, "Also write the picture to this file")->type_name("FILE");
   show->callback([options] { show_map(*options); });

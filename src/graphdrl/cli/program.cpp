@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 
 #include "graphdrl/base/error.h"
@@ -11,14 +12,14 @@ namespace graphdrl {
 namespace {
 
 int complain(const CLI::App& app, std::string_view message, int status) {
-  const std::string_view line = message.substr(0, message.find('\n'));
-  fmt::print(stderr, "{}: {}\n", app.get_name(), line);
+  print_diagnostic(fmt::format("{}: {}\n", app.get_name(), escaped(message.substr(0, message.find('\n')))));
   return status;
 }
 
 }  // namespace
 
 int run_program(CLI::App& app, int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe fails like any other write
   set_threads(hardware_threads());
   try {
     app.parse(argc, argv);
@@ -31,10 +32,10 @@ int run_program(CLI::App& app, int argc, char** argv) {
       parents += (parents.empty() ? "" : " ") + asked->get_name();
       asked = asked->get_subcommands().front();
     }
-    fmt::print("{}", asked->help(parents));
+    print_text(asked->help(parents));
     return kExitDone;
   } catch (const CLI::CallForVersion& call) {
-    fmt::print("{}\n", call.what());
+    print_text(fmt::format("{}\n", call.what()));
     return kExitDone;
   } catch (const CLI::RuntimeError& error) {  // a command that chose its own status
     return error.get_exit_code();
@@ -56,6 +57,15 @@ void add_threads_option(CLI::App& command) {
           "Threads to use; results do not depend on it (default: one per processor)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
+}
+
+CLI::Validator not_empty() {
+  return CLI::Validator([](std::string& text) { return std::string(text.empty() ? "expected a value, got ''" : ""); },
+                        "");
+}
+
+void print_diagnostic(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
 }
 
 void print_text(const std::string& text) {

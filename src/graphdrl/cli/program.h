@@ -20,8 +20,14 @@ int run_program(CLI::App& app, int argc, char** argv);
 // Adds --threads and has parallel_for use that many; the default is one per processor.
 void add_threads_option(CLI::App& command);
 
+// Refuses an empty text, such as that of a variable nobody set.
+CLI::Validator not_empty();
+
 // One JSON document on standard output.
 void print_json(const Json& json);
+
+// Text on standard error; where nobody listens, it is lost.
+void print_diagnostic(const std::string& text);
 
 // Text on standard output. Throws Error where it cannot be written (a closed pipe, a full disk).
 void print_text(const std::string& text);

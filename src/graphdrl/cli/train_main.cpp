@@ -27,6 +27,7 @@ void catch_signals() {
   action.sa_handler = remember_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
 }
 
 std::string kebab_case(std::string key) {
@@ -63,6 +64,10 @@ struct TrainCommand {
   bool json = false;
 };
 
+void add_field(CLI::App& app, const std::string& flag, std::uint64_t& value, const char* help) {
+  app.add_option(flag, value, help)->check(CLI::NonNegativeNumber)->capture_default_str();
+}
+
 void add_field(CLI::App& app, const std::string& flag, bool& value, const char* help) {
   app.add_flag(flag, value, help)->capture_default_str();
 }
@@ -86,9 +91,9 @@ void train(const TrainCommand& command) {
   const bool finished = trainer->run([] { return stop_signal != 0; }, display);
   const TrainingProgress& progress = trainer->progress();
   if (!finished) {
-    fmt::print(stderr,
-               "Stopped after {} of {} episodes; everything is saved. To go on:\n  graphdrl train --resume {}\n",
-               progress.episode, trainer->options().episodes, run);
+    print_diagnostic(
+        fmt::format("Stopped after {} of {} episodes; everything is saved. To go on:\n  graphdrl train --resume {}\n",
+                    progress.episode, trainer->options().episodes, run));
     throw CLI::RuntimeError(128 + stop_signal);
   }
   const std::string policy = trainer->run_directory().policy().string();
@@ -112,18 +117,23 @@ int main_program(int argc, char** argv) {
   for_each_field(command->options, [&](const char* key, auto& value, const char* help) {
     add_field(app, "--" + kebab_case(key), value, help);
   });
-  app.add_option("--out", command->out, "The run directory, new (default: runs/PRESET)")->type_name("RUN");
+  app.add_option("--out", command->out, "The run directory, new (default: runs/PRESET)")
+      ->type_name("RUN")
+      ->check(not_empty());
   const std::vector<CLI::Option*> new_run =
       app.get_options([](CLI::Option* option) { return option->get_name() != "--help"; });
-  app.add_option("--resume", command->resume, "Go on with a run; takes none of the options above")->type_name("RUN");
+  CLI::Option* const resume =
+      app.add_option("--resume", command->resume, "Go on with a run; takes none of the options above")
+          ->type_name("RUN")
+          ->check(not_empty());
   app.add_flag("--json", command->json, "Print one JSON document when done");
   add_threads_option(app);
   app.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
   app.config_formatter(std::make_shared<ConfigReader>());
   app.allow_config_extras(CLI::config_extras_mode::error);
-  app.callback([command, new_run] {
+  app.callback([command, new_run, resume] {
     for (const CLI::Option* const option : new_run) {
-      if (!command->resume.empty() && option->count() > 0) {
+      if (resume->count() > 0 && option->count() > 0) {
         throw Error({.what = option->get_name() + " does not go with --resume",
                      .expected = "the options that the run was started with",
                      .where = command->resume});

@@ -1,5 +1,7 @@
 #include "graphdrl/env/budget.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 
@@ -15,15 +17,22 @@ Budget Budget::parse(std::string_view text) {
   if (budget.relative_) number.remove_suffix(1);
   const char* const end = number.data() + number.size();
   const auto [rest, error] = std::from_chars(number.data(), end, budget.value_);
-  if (error != std::errc() || rest != end || !std::isfinite(budget.value_) || budget.value_ < 0) {
-    throw Error(
-        {.what = "bad budget", .expected = "a number from 0 up, or a multiple like 1.1x", .got = in_quotes(text)});
+  if (error != std::errc() || rest != end || !(budget.value_ >= 0 && budget.value_ <= kMaxBudget)) {
+    throw Error({.what = "bad budget",
+                 .expected = fmt::format("a number from 0 to {}, or a multiple like 1.1x", kMaxBudget),
+                 .got = in_quotes(text)});
   }
+  budget.value_ = std::abs(budget.value_);  // -0
   return budget;
 }
 
 double Budget::steps_in(const World& world) const {
-  return relative_ ? std::floor(value_ * world.valid_count() + 1e-9) : value_;
+  const double steps = relative_ ? std::floor(value_ * world.valid_count() + 1e-9) : value_;
+  if (steps <= kMaxBudget) return steps;
+  throw Error({.what = "bad budget",
+               .expected = fmt::format("at most {} steps", kMaxBudget),
+               .got = fmt::format("{} = {} steps", text_, steps),
+               .where = world.name()});
 }
 
 }  // namespace graphdrl

@@ -1,6 +1,7 @@
 // Budgets as users give them: a number of steps, or a multiple of the number of valid nodes.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -8,13 +9,15 @@
 
 namespace graphdrl {
 
+inline constexpr std::int64_t kMaxBudget = 1'000'000'000;  // steps; an episode keeps its walk in memory
+
 // "25", or "1.1x": floor(1.1 · n + 1e-9) steps in a world of n valid nodes.
 class Budget {
  public:
   // Throws Error on anything but a number from 0 up, with or without the x.
   static Budget parse(std::string_view text);
 
-  double steps_in(const World& world) const;
+  double steps_in(const World& world) const;  // throws Error where that is more than kMaxBudget
   const std::string& text() const { return text_; }
 
  private:

@@ -41,8 +41,7 @@ void Episode::reset(NodeId start) {
 }
 
 StepResult Episode::step(int action) {
-  const NodeId next = options_.action_space == ActionSpace::kDirections ? world_->direction_target(position_, action)
-                                                                        : world_->open_neighbours(position_)[action];
+  const NodeId next = observation().target(action);
   const bool blocked = next == position_;
   const std::uint32_t visits_before = visits_[next]++;
   const bool first_visit = visits_before == 0;

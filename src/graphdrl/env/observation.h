@@ -13,6 +13,8 @@ enum class ActionSpace {
   kNeighbours,  // the a-th open neighbour of the current node; works on any graph
 };
 
+inline constexpr int kNoAction = -1;
+
 // An answer of a policy that would rather end the episode than walk on.
 inline constexpr int kStop = -1;
 
@@ -28,12 +30,23 @@ struct Observation {
 
   bool visited(NodeId node) const { return visits[node] > 0; }
   bool all_visited() const { return visited_count == world->valid_count(); }
-  int action_count() const {
-    return action_space == ActionSpace::kDirections ? 4 : static_cast<int>(world->open_neighbours(position).size());
-  }
-};
 
-// The action that walks from the current node to `next`. REQUIRES: `next` is an open neighbour of it.
-int action_to(const Observation& observation, NodeId next);
+  int action_count() const {
+    return static_cast<int>(action_space == ActionSpace::kDirections ? kAllDirections.size()
+                                                                     : world->open_neighbours(position).size());
+  }
+
+  // Where an action leads; the current node itself where the move is blocked.
+  NodeId target(int action) const {
+    return action_space == ActionSpace::kDirections ? world->direction_target(position, action)
+                                                    : world->open_neighbours(position)[action];
+  }
+
+  // The action mask: false where a move would be blocked. Only for those who ask: directions can all be chosen.
+  bool legal(int action) const { return target(action) != position; }
+
+  // The first action that leads to `next`; for the current node, the first blocked one. kNoAction where there is none.
+  int action_to(NodeId next) const;
+};
 
 }  // namespace graphdrl

@@ -25,6 +25,10 @@ constexpr std::array<PaperResult, 10> kPaperTable2 = {{{89.8, 8.3, 100.0},
                                                        {82.1, 9.2, 95.5}}};
 constexpr double kPaperBudget = 25;
 
+// Purposes of derive_seed: what a map's figures are does not depend on the other policies of the comparison.
+constexpr std::uint64_t kStartSeeds = 1;
+constexpr std::uint64_t kPolicySeeds = 2;
+
 // A world with what all policies share on it.
 struct Arena {
   const World* world;
@@ -57,7 +61,7 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
     if (options.all_starts) {
       arena.starts.assign(nodes.begin(), nodes.end());
     } else {
-      Rng rng(options.seed);
+      Rng rng(derive_seed(options.seed, kStartSeeds, arenas.size()));
       for (int i = 0; i < options.episodes; ++i) {
         arena.starts.push_back(nodes[rng.below(static_cast<std::uint32_t>(nodes.size()))]);
       }
@@ -81,6 +85,15 @@ std::optional<Summary> measure(const Arena& arena, Policy& policy) {
     return std::nullopt;
   }
   return summarise(coverages);
+}
+
+// A policy's label; the name as given where two policies would share one.
+std::string unambiguous_label(const std::string& name, const std::vector<std::string>& all) {
+  const std::string label = policy_label(name);
+  for (const std::string& other : all) {
+    if (other != name && policy_label(other) == label) return name;
+  }
+  return label;
 }
 
 ComparisonOverall summarise_rows(const std::string& policy, std::span<const ComparisonRow> rows) {
@@ -116,20 +129,21 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
   if (options.episodes < 1) {
     throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
   }
-  std::vector<std::unique_ptr<Policy>> policies;  // all of them before any work: a bad name fails at once
-  for (const std::string& name : options.policies) policies.push_back(make_policy(name, options.seed));
+  for (const std::string& name : options.policies) make_policy(name, 0);  // a bad name fails before any work
 
   Comparison comparison{.options = options, .rows = {}, .overall = {}};
   const std::vector<Arena> arenas = make_arenas(worlds, options);
-  for (std::size_t i = 0; i < policies.size(); ++i) {
-    const std::string label = policy_label(options.policies[i]);
-    for (const Arena& arena : arenas) {
+  for (const std::string& name : options.policies) {
+    const std::string label = unambiguous_label(name, options.policies);
+    for (std::size_t map = 0; map < arenas.size(); ++map) {
+      const Arena& arena = arenas[map];
+      const auto policy = make_policy(name, derive_seed(options.seed, kPolicySeeds, map));
       comparison.rows.push_back({.map = arena.world->name(),
                                  .policy = label,
                                  .valid_nodes = arena.world->valid_count(),
                                  .budget_steps = arena.budget_steps,
                                  .episodes = static_cast<int>(arena.starts.size()),
-                                 .coverage = measure(arena, *policies[i]),
+                                 .coverage = measure(arena, *policy),
                                  .optimum = arena.optimum,
                                  .paper = paper_result(arena.world->name(), arena.budget_steps)});
     }

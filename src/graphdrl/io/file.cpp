@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "graphdrl/base/error.h"
 
@@ -42,13 +41,22 @@ std::string read_file(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, ignored)) fail(path, "cannot read the file", EISDIR);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail(path, "cannot read the file", errno);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  if (stream.bad()) fail(path, "cannot read the file", EIO);
-  return std::move(content).str();
+  std::string content;
+  char block[65'536];
+  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+    content.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad() || !stream.eof()) fail(path, "cannot read the file", EIO);
+  return content;
 }
 
-void write_file(const std::filesystem::path& path, std::string_view content) {
+void write_file(const std::filesystem::path& given, std::string_view content) {
+  std::error_code error;
+  std::filesystem::path path = std::filesystem::canonical(given, error);  // where a link leads
+  if (error) path = given;                                                // nothing there yet
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw Error({.what = "cannot write the file: something else stands there", .where = path.string()});
+  }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   const std::filesystem::path temporary = path.string() + ".tmp" + std::to_string(getpid());
   {

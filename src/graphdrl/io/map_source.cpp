@@ -23,9 +23,13 @@ NamedMap file_map(const std::filesystem::path& path) {
 
 std::vector<NamedMap> folder_maps(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.')) files.push_back(entry.path());
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code unknown;
+    if (!entry->is_regular_file(unknown) || entry->path().filename().string().starts_with('.')) continue;
+    files.push_back(entry->path());
   }
+  if (error) throw Error({.what = "cannot read the folder (" + error.message() + ")", .where = folder.string()});
   if (files.empty()) throw Error({.what = "no map files in the folder", .where = folder.string()});
   std::sort(files.begin(), files.end());
   std::vector<NamedMap> maps;

@@ -147,18 +147,22 @@ Safetensors Safetensors::parse(std::string content, const std::string& source) {
   return file;
 }
 
-std::span<const char> Safetensors::find(const std::string& name, std::string_view dtype, const Shape& shape) const {
-  const auto entry =
-      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& candidate) { return candidate.name == name; });
-  if (entry == entries_.end()) fail(source_, "tensor " + in_quotes(name) + " is missing");
-  if (entry->dtype != dtype) {
-    fail(source_, "tensor " + in_quotes(name) + " has the wrong type", std::string(dtype), entry->dtype);
+const Safetensors::Entry& Safetensors::find(const std::string& name) const {
+  for (const Entry& entry : entries_) {
+    if (entry.name == name) return entry;
   }
-  if (entry->shape != shape) {
-    fail(source_, "tensor " + in_quotes(name) + " has the wrong shape", format_shape(shape),
-         format_shape(entry->shape));
+  fail(source_, "tensor " + in_quotes(name) + " is missing");
+}
+
+std::span<const char> Safetensors::bytes_of(const std::string& name, std::string_view dtype, const Shape& shape) const {
+  const Entry& entry = find(name);
+  if (entry.dtype != dtype) {
+    fail(source_, "tensor " + in_quotes(name) + " has the wrong type", std::string(dtype), entry.dtype);
   }
-  return {content_.data() + data_begin_ + entry->begin, entry->end - entry->begin};
+  if (entry.shape != shape) {
+    fail(source_, "tensor " + in_quotes(name) + " has the wrong shape", format_shape(shape), format_shape(entry.shape));
+  }
+  return {content_.data() + data_begin_ + entry.begin, entry.end - entry.begin};
 }
 
 }  // namespace graphdrl

@@ -74,17 +74,21 @@ class Safetensors {
   const Metadata& metadata() const { return metadata_; }
   const std::string& source() const { return source_; }
 
+  // The shape of an array. Throws Error where the file holds none of that name.
+  const Shape& shape_of(const std::string& name) const { return find(name).shape; }
+
   // A copy of one array. Throws Error where the file holds none of that name, type and shape.
   template <typename T>
   std::vector<T> get(const std::string& name, const Shape& shape) const {
-    const std::span<const char> bytes = find(name, kDtypeOf<T>, shape);
+    const std::span<const char> bytes = bytes_of(name, kDtypeOf<T>, shape);
     std::vector<T> values(bytes.size() / sizeof(T));
     std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(values.data()));
     return values;
   }
 
  private:
-  std::span<const char> find(const std::string& name, std::string_view dtype, const Shape& shape) const;
+  const Entry& find(const std::string& name) const;
+  std::span<const char> bytes_of(const std::string& name, std::string_view dtype, const Shape& shape) const;
 
   std::string source_;
   std::string content_;

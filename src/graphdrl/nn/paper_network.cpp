@@ -69,8 +69,12 @@ nlohmann::json network_description() {
   }
   layers.push_back({{"type", "linear"}, {"inputs", kPooledWidth}, {"width", kHiddenWidth}});
   layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
-  return {{"kind", "paper"},  {"features", kFeatureNames}, {"actions", kDirectionNames},
-          {"layers", layers}, {"activation", "elu"},       {"batch_norm", {{"epsilon", 1e-5}, {"momentum", 0.1}}},
+  return {{"kind", "paper"},
+          {"features", kFeatureNames},
+          {"actions", kDirectionNames},
+          {"layers", layers},
+          {"activation", "elu"},
+          {"batch_norm", {{"epsilon", kBatchNormEpsilon}, {"momentum", kBatchNormMomentum}}},
           {"pooling", "sum"}};
 }
 
@@ -136,6 +140,13 @@ PaperParameters PaperParameters::from_file(const Safetensors& file, const std::s
   PaperParameters parameters;
   for (const TensorSpec& spec : specs()) {
     const std::vector<float> values = file.get<float>(prefix + spec.name, spec.shape);
+    const bool variance = spec.name.ends_with("running_var");
+    for (const float value : values) {
+      if (std::isfinite(value) && !(variance && value < 0)) continue;
+      throw Error({.what = "tensor " + in_quotes(prefix + spec.name) + " holds a value that no network can have",
+                   .got = fmt::format("{}", value),
+                   .where = file.source()});
+    }
     std::copy(values.begin(), values.end(), parameters.values_.begin() + static_cast<std::ptrdiff_t>(spec.offset));
   }
   return parameters;
@@ -188,7 +199,7 @@ void PaperNetwork::normalise(int layer, std::span<float> x) const {
   const float* const variance = parameters_->tensor(name + ".running_var");
   const int width = kConvShapes[layer - 1].width;
   std::array<float, kPooledWidth> scale{};
-  for (int i = 0; i < width; ++i) scale[i] = weight[i] / std::sqrt(variance[i] + kBatchNormEpsilon);
+  for (int i = 0; i < width; ++i) scale[i] = weight[i] / std::sqrt(variance[i] + static_cast<float>(kBatchNormEpsilon));
   for (float* row = x.data(); row != x.data() + x.size(); row += width) {
     for (int i = 0; i < width; ++i) row[i] = (row[i] - mean[i]) * scale[i] + bias[i];
   }

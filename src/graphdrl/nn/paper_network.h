@@ -22,8 +22,8 @@ namespace graphdrl {
 inline constexpr std::array<GatedGraphConvShape, 3> kConvShapes = {{{7, 7, 4}, {7, 64, 4}, {64, 128, 4}}};
 inline constexpr int kHiddenWidth = 256;
 inline constexpr int kActionCount = 4;  // left, up, right, down
-inline constexpr float kBatchNormEpsilon = 1e-5f;
-inline constexpr float kBatchNormMomentum = 0.1f;
+inline constexpr double kBatchNormEpsilon = 1e-5;
+inline constexpr double kBatchNormMomentum = 0.1;
 
 // One tensor of the network, and where it stands in the flat buffer of all of them.
 struct TensorSpec {

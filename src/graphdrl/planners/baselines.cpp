@@ -19,12 +19,12 @@ int RandomPolicy::act_on(const Observation& observation) {
 int RandomWalkPolicy::act_on(const Observation& observation) {
   const auto neighbours = observation.world->open_neighbours(observation.position);
   if (neighbours.empty()) return kStop;
-  return action_to(observation, neighbours[rng_.below(static_cast<std::uint32_t>(neighbours.size()))]);
+  return observation.action_to(neighbours[rng_.below(static_cast<std::uint32_t>(neighbours.size()))]);
 }
 
 int DepthFirstPolicy::act_on(const Observation& observation) {
   for (const NodeId next : observation.world->open_neighbours(observation.position)) {
-    if (!observation.visited(next)) return action_to(observation, next);
+    if (!observation.visited(next)) return observation.action_to(next);
   }
   // The way from the root to here: a node entered for the first time goes on it, a step back takes one off.
   std::vector<NodeId> trail;
@@ -37,7 +37,7 @@ int DepthFirstPolicy::act_on(const Observation& observation) {
       trail.push_back(node);
     }
   }
-  return trail.size() < 2 ? kStop : action_to(observation, trail[trail.size() - 2]);
+  return trail.size() < 2 ? kStop : observation.action_to(trail[trail.size() - 2]);
 }
 
 int NearestUnvisitedPolicy::act_on(const Observation& observation) {
@@ -45,7 +45,7 @@ int NearestUnvisitedPolicy::act_on(const Observation& observation) {
   const std::vector<NodeId> path = path_to_nearest(
       world.graph(), observation.position, [&](NodeId node) { return !observation.visited(node); },
       [&](NodeId node) { return !world.is_blocked(node); });
-  return path.empty() ? kStop : action_to(observation, path.front());
+  return path.empty() ? kStop : observation.action_to(path.front());
 }
 
 }  // namespace graphdrl

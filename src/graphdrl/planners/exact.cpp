@@ -214,14 +214,14 @@ int ExactPolicy::act_on(const Observation& observation) {
   const std::vector<NodeId>& walk = known->second;
   const bool on_plan =
       steps < std::ssize(walk) && std::equal(observation.walk.begin(), observation.walk.end(), walk.begin());
-  if (on_plan) return steps + 1 < std::ssize(walk) ? action_to(observation, walk[steps + 1]) : kStop;
+  if (on_plan) return steps + 1 < std::ssize(walk) ? observation.action_to(walk[steps + 1]) : kStop;
 
   // Someone else led the way here: plan from this state.
   SearchStart here{
       .world = &world, .position = observation.position, .visited = {}, .budget_left = observation.budget_left};
   for (const std::uint32_t visits : observation.visits) here.visited.push_back(visits > 0);
   const std::vector<NodeId> rest = plan(here);
-  return rest.size() < 2 ? kStop : action_to(observation, rest[1]);
+  return rest.size() < 2 ? kStop : observation.action_to(rest[1]);
 }
 
 }  // namespace graphdrl

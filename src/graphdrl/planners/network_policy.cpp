@@ -5,6 +5,11 @@
 #include "graphdrl/base/error.h"
 
 namespace graphdrl {
+namespace {
+
+constexpr std::int64_t kMaxBatchNodes = 8192;  // about 32 MB of working memory
+
+}  // namespace
 
 NetworkPolicy::NetworkPolicy(PaperParameters parameters) : parameters_(std::move(parameters)) {
   network_.set_parameters(parameters_);
@@ -15,6 +20,21 @@ const FeatureEncoder& NetworkPolicy::encoder_for(const World& world) {
 }
 
 void NetworkPolicy::q_values(std::span<const Observation> observations, std::span<float> q) {
+  while (!observations.empty()) {
+    std::size_t count = 1;
+    std::int64_t nodes = observations[0].world->graph().node_count();
+    while (count < observations.size()) {
+      nodes += observations[count].world->graph().node_count();
+      if (nodes > kMaxBatchNodes) break;
+      ++count;
+    }
+    q_values_of_block(observations.first(count), q.first(count * kActionCount));
+    observations = observations.subspan(count);
+    q = q.subspan(count * kActionCount);
+  }
+}
+
+void NetworkPolicy::q_values_of_block(std::span<const Observation> observations, std::span<float> q) {
   batch_.clear();
   for (const Observation& observation : observations) {
     if (observation.action_space != ActionSpace::kDirections) {

@@ -19,12 +19,14 @@ class NetworkPolicy final : public Policy {
 
   void act(std::span<const Observation> observations, std::span<int> actions) override;
 
-  // q: [B, A], raw.
+  // q: [B, A], raw. Many or large observations are worked off in blocks, cut by size.
   void q_values(std::span<const Observation> observations, std::span<float> q);
 
   const FeatureEncoder& encoder_for(const World& world);
 
  private:
+  void q_values_of_block(std::span<const Observation> observations, std::span<float> q);
+
   PaperParameters parameters_;
   PaperNetwork network_;
   std::map<const World*, FeatureEncoder> encoders_;

@@ -35,11 +35,13 @@ std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed)
   if (factory != factories().end()) return factory->second(seed);
   std::error_code error;
   if (std::filesystem::exists(name, error)) return std::make_unique<NetworkPolicy>(read_policy_file(name));
+  throw Error({.what = "no such policy", .expected = policy_names(), .got = in_quotes(name, 200)});
+}
+
+std::string policy_names() {
   std::vector<std::string> names;
-  for (const auto& [known, unused] : factories()) names.push_back(known);
-  throw Error({.what = "no such policy",
-               .expected = fmt::format("{} or a policy file", fmt::join(names, ", ")),
-               .got = in_quotes(name, 200)});
+  for (const auto& [name, unused] : factories()) names.push_back(name);
+  return fmt::format("{} or a policy file", fmt::join(names, ", "));
 }
 
 std::string policy_label(const std::string& name) {

@@ -14,6 +14,9 @@ namespace graphdrl {
 // that holds no policy.
 std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed);
 
+// "dfs, exact, nearest, random, random-walk or a policy file", for help and errors.
+std::string policy_names();
+
 // What a policy is called in a table: the name given, a file's stem.
 std::string policy_label(const std::string& name);
 

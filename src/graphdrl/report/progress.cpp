@@ -15,7 +15,7 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr Seconds kTerminalInterval{0.1};
 constexpr Seconds kPlainInterval{10};
-constexpr int kBarWidth = 20;
+constexpr std::size_t kMaxBarWidth = 30;
 
 std::string format_duration(double seconds) {
   const auto whole = static_cast<std::int64_t>(std::lround(seconds));
@@ -43,27 +43,28 @@ void ProgressDisplay::show(const TrainingStatus& status, bool always) {
   const double left_s =
       done > 0 ? elapsed_s / static_cast<double>(done) * static_cast<double>(status.episodes - status.episode) : NAN;
   std::string line =
-      fmt::format("episode {}/{}  coverage {:.1f} %  reward {:.2f}  loss {}  epsilon {:.3f}  {:.0f} steps/s  {} left",
+      fmt::format("{}/{}  coverage {:.1f} %  reward {:.2f}  loss {}  eps {:.3f}  {:.0f} steps/s  {} left",
                   status.episode, status.episodes, status.coverage, status.reward,
-                  std::isnan(status.loss) ? std::string("–") : fmt::format("{:.4f}", status.loss), status.epsilon,
+                  std::isnan(status.loss) ? std::string("-") : fmt::format("{:.4f}", status.loss), status.epsilon,
                   static_cast<double>(status.steps_this_session) / std::max(elapsed_s, 1e-9),
-                  std::isnan(left_s) ? std::string("–") : format_duration(left_s));
+                  std::isnan(left_s) ? std::string("-") : format_duration(left_s));
   if (!terminal_) {
-    fmt::print(out_, "{}\n", line);
+    std::fputs(("episode " + line + '\n').c_str(), out_);
   } else {
-    const auto filled =
-        static_cast<std::size_t>(kBarWidth * status.episode / std::max<std::int64_t>(status.episodes, 1));
-    line = fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(kBarWidth - filled, '.'), line);
+    // The bar takes what room the numbers leave.
     const std::size_t columns = terminal_columns(out_);
+    const std::size_t room = columns > line.size() + 4 ? std::min(columns - line.size() - 4, kMaxBarWidth) : 0;
+    const auto filled = room * static_cast<std::size_t>(status.episode) / static_cast<std::size_t>(status.episodes);
+    if (room > 0) line = fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(room - filled, '.'), line);
     if (line.size() > columns) line.resize(columns);
-    fmt::print(out_, "\r{}\033[K", line);
+    std::fputs(("\r" + line + "\033[K").c_str(), out_);
     line_open_ = true;
   }
   std::fflush(out_);
 }
 
 void ProgressDisplay::finish() {
-  if (line_open_) fmt::print(out_, "\n");
+  if (line_open_) std::fputc('\n', out_);
   line_open_ = false;
 }
 

@@ -7,7 +7,7 @@
 
 namespace graphdrl {
 
-// Means over the last episodes, except where said.
+// Means over the episodes since the last line of metrics, except where said.
 struct TrainingStatus {
   std::int64_t episode;   // done
   std::int64_t episodes;  // in all
@@ -18,7 +18,8 @@ struct TrainingStatus {
   std::int64_t steps_this_session;
 };
 
-// A bar that rewrites its line on a terminal, plain lines at intervals elsewhere.
+// Shows nothing, rather than fail, where the stream is closed. A bar that rewrites its line on a terminal, plain lines
+// at intervals elsewhere.
 class ProgressDisplay {
  public:
   // `first_episode`: where this session begins, for the time left.

@@ -2,6 +2,9 @@
 
 #include <torch/torch.h>
 
+#include <algorithm>
+
+#include "graphdrl/base/error.h"
 #include "graphdrl/nn/features.h"
 #include "graphdrl/train/td_target.h"
 
@@ -91,6 +94,8 @@ void Learner::restore(const Safetensors& file) {
   const auto first = file.get<float>("adam.exp_avg", {count});
   const auto second = file.get<float>("adam.exp_avg_sq", {count});
   const std::int64_t step = file.get<std::int64_t>("adam.step", {1}).front();
+  const bool moments_are_real = std::all_of(second.begin(), second.end(), [](float value) { return value >= 0; });
+  if (step < 0 || !moments_are_real) throw Error({.what = "Adam's state is damaged", .where = file.source()});
   std::copy(online.values().begin(), online.values().end(), online_.parameters().values().begin());
   std::copy(target.values().begin(), target.values().end(), target_.parameters().values().begin());
   std::copy(first.begin(), first.end(), adam_state().exp_avg().data_ptr<float>());

@@ -1,7 +1,5 @@
 #include "graphdrl/train/replay_buffer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
@@ -36,22 +34,16 @@ void ReplayBuffer::save(Packed& packed, std::vector<TensorView>& tensors) const 
   tensors.emplace_back("replay.next", Shape{1}, std::span<const std::int64_t>(packed.next));
 }
 
-void ReplayBuffer::restore(const Safetensors& file) {
-  const auto entry =
-      std::find_if(file.entries().begin(), file.entries().end(),
-                   [](const Safetensors::Entry& candidate) { return candidate.name == "replay.rewards"; });
-  const std::int64_t size = entry == file.entries().end() || entry->shape.size() != 1 ? 0 : entry->shape[0];
-  if (size > static_cast<std::int64_t>(capacity_)) {
-    throw Error({.what = "the replay buffer is too large",
-                 .expected = fmt::format("at most {} transitions", capacity_),
-                 .got = fmt::format("{}", size),
-                 .where = file.source()});
-  }
-  visits_ = file.get<std::uint16_t>("replay.visits", {size, static_cast<std::int64_t>(max_nodes_)});
-  const auto integers = file.get<std::int32_t>("replay.transitions", {size, kIntegers});
+void ReplayBuffer::restore(const Safetensors& file, const std::function<bool(const Transition&)>& is_valid) {
+  const auto fail = [&](const std::string& what) { throw Error({.what = what, .where = file.source()}); };
+  const Shape& shape = file.shape_of("replay.rewards");
+  const std::int64_t size = shape.size() == 1 ? shape[0] : 0;
   const auto rewards = file.get<float>("replay.rewards", {size});
+  const auto integers = file.get<std::int32_t>("replay.transitions", {size, kIntegers});
   const std::int64_t next = file.get<std::int64_t>("replay.next", {1}).front();
-  if (next < 0 || next > size) throw Error({.what = "bad place in the replay buffer", .where = file.source()});
+  if (size > static_cast<std::int64_t>(capacity_)) fail("the checkpoint's replay buffer is larger than the run's");
+  if (next < 0 || next >= static_cast<std::int64_t>(capacity_) || next > size) fail("bad place in the replay buffer");
+  visits_ = file.get<std::uint16_t>("replay.visits", {size, static_cast<std::int64_t>(max_nodes_)});
   next_ = static_cast<std::size_t>(next);
   transitions_.clear();
   for (std::int64_t i = 0; i < size; ++i) {
@@ -62,6 +54,7 @@ void ReplayBuffer::restore(const Safetensors& file) {
                             .next_position = t[3],
                             .reward = rewards[i],
                             .terminal = t[4] != 0});
+    if (!is_valid(transitions_.back())) fail("the replay buffer holds a transition of another world");
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct Transition {
   bool terminal;  // nothing follows s': no bootstrap
 };
 
-inline constexpr double kMaxReplayBudget = 65'534;  // steps; visit counts are kept in 16 bits
+inline constexpr int kMaxReplayBudget = 65'534;  // steps; visit counts are kept in 16 bits
 
 // A ring of compact states: features are built when sampled. Memory grows with what is stored, up to the capacity.
 class ReplayBuffer {
@@ -44,8 +45,8 @@ class ReplayBuffer {
     std::vector<std::int64_t> next;      // [1]
   };
   void save(Packed& packed, std::vector<TensorView>& tensors) const;
-  // Throws Error where the file's arrays do not fit this buffer.
-  void restore(const Safetensors& file);
+  // Throws Error where the file's arrays do not fit this buffer, or hold a transition that is_valid refuses.
+  void restore(const Safetensors& file, const std::function<bool(const Transition&)>& is_valid);
 
  private:
   static constexpr std::int64_t kIntegers = 5;

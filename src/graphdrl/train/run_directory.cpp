@@ -6,12 +6,10 @@
 namespace graphdrl {
 
 void RunDirectory::create() const {
-  for (const auto& file : {config(), checkpoint()}) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) continue;
+  std::error_code error;
+  if (std::filesystem::exists(checkpoint(), error)) {
     throw Error({.what = "the folder holds a run already",
                  .expected = "a new folder, or --resume to go on with that run",
-                 .got = file.filename().string(),
                  .where = path_.string()});
   }
   prepare_folder(path_);

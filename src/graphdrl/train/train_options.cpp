@@ -27,13 +27,32 @@ void check_range(const std::string& option, T value, T low, T high) {
                .where = option});
 }
 
+bool has_type_of(const nlohmann::json& json, const std::string&) {
+  return json.is_string();
+}
+bool has_type_of(const nlohmann::json& json, bool) {
+  return json.is_boolean();
+}
+bool has_type_of(const nlohmann::json& json, std::int64_t) {
+  return json.is_number_integer();
+}
+bool has_type_of(const nlohmann::json& json, std::uint64_t) {
+  return json.is_number_unsigned();
+}
+bool has_type_of(const nlohmann::json& json, double) {
+  return json.is_number();
+}
+bool has_type_of(const nlohmann::json& json, const std::vector<std::string>&) {
+  return json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& item) { return item.is_string(); });
+}
+
 }  // namespace
 
 void validate(const TrainOptions& options) {
   constexpr std::int64_t kMany = 1'000'000'000;
   check_choice("--preset", options.preset, {"paper"});
   check_choice("--reward", options.reward, {"visit_penalty", "coverage_gain"});
-  check_choice("--algorithm", options.algorithm, {"dqn", "double-dqn"});
+  check_choice("--algorithm", options.algorithm, {"dqn", "double_dqn"});
   check_range<std::int64_t>("--episodes", options.episodes, 1, kMany);
   check_range<std::int64_t>("--batch-size", options.batch_size, 1, 65'536);
   check_range<std::int64_t>("--replay-capacity", options.replay_capacity, options.batch_size + 1, kMany);
@@ -43,6 +62,9 @@ void validate(const TrainOptions& options) {
   check_range("--soft-update", options.soft_update, 0.0, 1.0);
   check_range("--dropout", options.dropout, 0.0, 0.99);
   Budget::parse(options.budget);
+  if (options.punish_blocked_by_visits && options.reward != "visit_penalty") {
+    throw Error({.what = "only the reward visit_penalty punishes anything", .where = "--punish-blocked-by-visits"});
+  }
   if (options.maps.empty()) throw Error({.what = "no maps to train on", .where = "--maps"});
 }
 
@@ -67,11 +89,10 @@ TrainOptions read_config(const std::filesystem::path& path) {
   std::size_t known = 0;
   for_each_field(options, [&](const char* key, auto& value, const char*) {
     if (!json.contains(key)) throw Error({.what = "missing key " + in_quotes(key), .where = path.string()});
-    try {
-      json[key].get_to(value);
-    } catch (const nlohmann::json::exception&) {
+    if (!has_type_of(json[key], value)) {
       throw Error({.what = "value of the wrong type", .got = json[key].dump(), .where = path.string() + ": " + key});
     }
+    json[key].get_to(value);
     ++known;
   });
   if (known != json.size()) throw Error({.what = "a key that no option has", .where = path.string()});

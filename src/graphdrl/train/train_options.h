@@ -11,6 +11,8 @@
 
 namespace graphdrl {
 
+inline constexpr const char* kRandomStart = "random";
+
 // The defaults are the preset `paper`: the paper's numbers (section 2.2), and its author's code where the paper is
 // silent.
 struct TrainOptions {
@@ -18,6 +20,7 @@ struct TrainOptions {
   std::vector<std::string> maps = {"paper:a"};
   std::int64_t episodes = 10'000;
   std::string budget = "25";
+  std::string start = kRandomStart;
   std::uint64_t seed = 1;
   std::string reward = "visit_penalty";
   bool end_at_full_coverage = false;
@@ -35,16 +38,17 @@ struct TrainOptions {
 // Calls field(key, member, help) for every option, in the order of the help.
 template <typename Options, typename Field>
 void for_each_field(Options& options, const Field& field) {
-  field("preset", options.preset, "Where the other options start from: paper");
+  field("preset", options.preset, "The explorer to train: paper");
   field("maps", options.maps, "Maps to train on, drawn anew for every episode: paper:a, a file, a folder");
   field("episodes", options.episodes, "Episodes; epsilon's schedule spans all of them");
   field("budget", options.budget, "Steps per episode, or a multiple of the valid nodes, as 1.1x");
-  field("seed", options.seed, "The same seed gives the same policy file, byte for byte");
+  field("start", options.start, "Where episodes start: random, a node id, or row,col");
+  field("seed", options.seed, "The same seed gives the same policy file, byte for byte (same build and machine)");
   field("reward", options.reward, "visit_penalty (paper, eq. 3) or coverage_gain (eq. 2)");
   field("end_at_full_coverage", options.end_at_full_coverage, "End an episode at full coverage, with a bonus of 1");
   field("punish_blocked_by_visits", options.punish_blocked_by_visits,
-        "Punish a blocked move by a further 0.1 per visit of the node");
-  field("algorithm", options.algorithm, "dqn or double-dqn");
+        "Punish a blocked move by a further 0.1 per visit of the node (with visit_penalty)");
+  field("algorithm", options.algorithm, "dqn or double_dqn");
   field("batch_size", options.batch_size, "Transitions per learning step");
   field("replay_capacity", options.replay_capacity, "Transitions the replay buffer keeps");
   field("discount", options.discount, "Of the next state's value; the paper's alpha");

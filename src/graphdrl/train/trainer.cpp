@@ -6,9 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/map_source.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/io/ascii_map.h"
 #include "graphdrl/planners/network_policy.h"
 #include "graphdrl/train/epsilon_schedule.h"
 
@@ -16,6 +18,7 @@ namespace graphdrl {
 namespace {
 
 constexpr const char* kProgressKey = "progress";
+constexpr const char* kWorldsKey = "worlds";
 
 // The one table of TrainingProgress, for saving and restoring.
 template <typename Progress, typename Field>
@@ -31,20 +34,48 @@ void for_each_progress_field(Progress& progress, const Field& field) {
   field("window_reward", progress.window_reward);
 }
 
-std::vector<World> load_worlds(const TrainOptions& options) {
-  validate(options);
-  std::vector<World> worlds;
-  for (const std::string& source : options.maps) {
-    for (const NamedMap& named : load_maps(source)) worlds.emplace_back(named.name, named.map);
-  }
+// Throws Error where a world does not fit the options.
+void check_worlds(const std::vector<World>& worlds, const TrainOptions& options) {
   for (const World& world : worlds) {
     const double budget = episode_options(options, world).budget;
     if (budget < 1 || budget > kMaxReplayBudget) {
       throw Error({.what = "budget out of range for training",
-                   .expected = fmt::format("1 to {:.0f} steps", kMaxReplayBudget),
+                   .expected = fmt::format("1 to {} steps", kMaxReplayBudget),
                    .got = fmt::format("{:g}", budget),
                    .where = world.name()});
     }
+    if (options.start != kRandomStart) parse_start(world, options.start);
+  }
+}
+
+// The worlds themselves go into the checkpoint: a run goes on from anywhere, whatever became of the map files.
+std::string pack_worlds(const std::vector<World>& worlds) {
+  auto json = nlohmann::ordered_json::array();
+  for (const World& world : worlds) json.push_back({{"name", world.name()}, {"map", format_ascii_map(*world.map())}});
+  return json.dump();
+}
+
+// The text under a key of a checkpoint's metadata, parsed.
+nlohmann::json metadata_json(const Safetensors& file, const std::string& key) {
+  const auto text = file.metadata().find(key);
+  if (text == file.metadata().end()) {
+    throw Error({.what = "not a checkpoint", .expected = in_quotes(key) + " in its metadata", .where = file.source()});
+  }
+  return nlohmann::json::parse(text->second, nullptr, /*allow_exceptions=*/false);
+}
+
+std::vector<World> unpack_worlds(const Safetensors& file) {
+  const auto fail = [&] { throw Error({.what = "the checkpoint holds no maps", .where = file.source()}); };
+  const nlohmann::json json = metadata_json(file, kWorldsKey);
+  if (!json.is_array() || json.empty()) fail();
+  std::vector<World> worlds;
+  for (const auto& item : json) {
+    if (!item.is_object() || !item.contains("name") || !item["name"].is_string() || !item.contains("map") ||
+        !item["map"].is_string()) {
+      fail();
+    }
+    worlds.emplace_back(item["name"].get<std::string>(),
+                        parse_ascii_map(item["map"].get<std::string>(), file.source()));
   }
   return worlds;
 }
@@ -56,7 +87,7 @@ std::size_t largest(const std::vector<World>& worlds) {
 }
 
 LearnerOptions learner_options(const TrainOptions& options) {
-  return {.double_dqn = options.algorithm == "double-dqn",
+  return {.double_dqn = options.algorithm == "double_dqn",
           .discount = options.discount,
           .learning_rate = options.learning_rate,
           .soft_update = options.soft_update,
@@ -65,10 +96,10 @@ LearnerOptions learner_options(const TrainOptions& options) {
 
 }  // namespace
 
-Trainer::Trainer(const TrainOptions& options, RunDirectory run)
+Trainer::Trainer(const TrainOptions& options, RunDirectory run, std::vector<World> worlds)
     : options_(options),
       run_(std::move(run)),
-      worlds_(load_worlds(options)),
+      worlds_(std::move(worlds)),
       encoders_(worlds_.begin(), worlds_.end()),
       rng_(options.seed),
       learner_(learner_options(options), rng_),
@@ -77,7 +108,10 @@ Trainer::Trainer(const TrainOptions& options, RunDirectory run)
 }
 
 std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDirectory& run) {
-  std::unique_ptr<Trainer> trainer(new Trainer(options, run));
+  validate(options);
+  std::vector<World> worlds = load_worlds(options.maps);
+  check_worlds(worlds, options);
+  std::unique_ptr<Trainer> trainer(new Trainer(options, run, std::move(worlds)));
   run.create();
   write_config(run.config(), options);
   trainer->save();
@@ -85,13 +119,17 @@ std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDi
 }
 
 std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run) {
-  std::unique_ptr<Trainer> trainer(new Trainer(read_config(run.config()), run));
-  trainer->restore();
+  const TrainOptions options = read_config(run.config());
+  const Safetensors checkpoint = Safetensors::read(run.checkpoint());
+  std::vector<World> worlds = unpack_worlds(checkpoint);
+  check_worlds(worlds, options);
+  std::unique_ptr<Trainer> trainer(new Trainer(options, run, std::move(worlds)));
+  trainer->restore(checkpoint);
   return trainer;
 }
 
 bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
-  steps_before_session_ = progress_.steps;
+  const std::int64_t steps_before = progress_.steps;
   const double elapsed_before_s = progress_.elapsed_s;
   const auto start = std::chrono::steady_clock::now();
   const auto update_clock = [&] {
@@ -114,8 +152,16 @@ bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
     if (!episode.done()) break;
     end_episode();
     const bool last = progress_.episode == options_.episodes;
-    if (progress_.window_episodes == kLogEvery || last) log(metrics, events);
-    show(display, last);
+    const MetricsLine line = window_means();
+    display.show({.episode = progress_.episode,
+                  .episodes = options_.episodes,
+                  .coverage = line.coverage,
+                  .reward = line.reward,
+                  .loss = line.loss,
+                  .epsilon = line.epsilon,
+                  .steps_this_session = progress_.steps - steps_before},
+                 last);
+    if (progress_.window_episodes == kLogEvery || last) log(line, metrics, events);
     if (progress_.episode % options_.checkpoint_every == 0 && !last) {
       update_clock();
       save();
@@ -128,12 +174,20 @@ bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
 }
 
 void Trainer::begin_episode() {
-  world_ = worlds_.size() == 1 ? 0 : static_cast<int>(rng_.below(static_cast<std::uint32_t>(worlds_.size())));
-  const auto nodes = worlds_[world_].valid_nodes();
-  const NodeId start = nodes[rng_.below(static_cast<std::uint32_t>(nodes.size()))];
-  episodes_[world_].reset(start);
-  features_.resize(static_cast<std::size_t>(worlds_[world_].graph().node_count()) * kFeatureCount);
-  encoders_[world_].begin(start, features_);
+  const int world = worlds_.size() == 1 ? 0 : static_cast<int>(rng_.below(static_cast<std::uint32_t>(worlds_.size())));
+  if (options_.start != kRandomStart) {
+    begin_episode_at(world, parse_start(worlds_[world], options_.start));
+    return;
+  }
+  const auto nodes = worlds_[world].valid_nodes();
+  begin_episode_at(world, nodes[rng_.below(static_cast<std::uint32_t>(nodes.size()))]);
+}
+
+void Trainer::begin_episode_at(int world, NodeId start) {
+  world_ = world;
+  episodes_[world].reset(start);
+  features_.resize(static_cast<std::size_t>(worlds_[world].graph().node_count()) * kFeatureCount);
+  encoders_[world].begin(start, features_);
   actions_.clear();
   episode_reward_ = 0;
   in_episode_ = true;
@@ -212,9 +266,9 @@ void Trainer::end_episode() {
   in_episode_ = false;
 }
 
-void Trainer::log(MetricsFile& metrics, EventWriter& events) {
+MetricsLine Trainer::window_means() const {
   const auto episodes = static_cast<double>(progress_.window_episodes);
-  const MetricsLine line{
+  return {
       .episode = progress_.episode,
       .steps = progress_.steps,
       .epsilon = epsilon_at(progress_.episode - 1, options_.episodes),
@@ -222,26 +276,17 @@ void Trainer::log(MetricsFile& metrics, EventWriter& events) {
       .visited_nodes = progress_.window_visited / episodes,
       .coverage = progress_.window_coverage / episodes,
       .reward = progress_.window_reward / episodes};
+}
+
+void Trainer::log(const MetricsLine& line, MetricsFile& metrics, EventWriter& events) {
   metrics.write(line);
   std::vector<Scalar> scalars = {
-      {"epsilon", line.epsilon}, {"nodes_visited", line.visited_nodes}, {"reward", line.reward}};
+      {"epsilon", line.epsilon}, {"visited_nodes", line.visited_nodes}, {"reward", line.reward}};
   if (!std::isnan(line.loss)) scalars.push_back({"loss", line.loss});
   events.write(line.episode, scalars);
-  last_line_ = line;
   progress_.window_episodes = 0;
   progress_.window_losses = 0;
   progress_.window_loss = progress_.window_visited = progress_.window_coverage = progress_.window_reward = 0;
-}
-
-void Trainer::show(ProgressDisplay& display, bool always) {
-  display.show({.episode = progress_.episode,
-                .episodes = options_.episodes,
-                .coverage = last_line_.coverage,
-                .reward = last_line_.reward,
-                .loss = last_line_.loss,
-                .epsilon = epsilon_at(progress_.episode - 1, options_.episodes),
-                .steps_this_session = progress_.steps - steps_before_session_},
-               always);
 }
 
 void Trainer::save() {
@@ -261,42 +306,44 @@ void Trainer::save() {
   tensors.emplace_back("episode", Shape{std::ssize(episode)}, std::span<const std::int32_t>(episode));
   nlohmann::ordered_json json;
   for_each_progress_field(progress_, [&](const char* key, const auto& value) { json[key] = value; });
-  write_safetensors(run_.checkpoint(), tensors, {{kProgressKey, json.dump()}});
+  write_safetensors(run_.checkpoint(), tensors, {{kProgressKey, json.dump()}, {kWorldsKey, pack_worlds(worlds_)}});
   write_policy_file(run_.policy(), learner_.online().parameters());
 }
 
-void Trainer::restore() {
-  const Safetensors file = Safetensors::read(run_.checkpoint());
+void Trainer::restore(const Safetensors& file) {
   const auto fail = [&](const std::string& what) { throw Error({.what = what, .where = file.source()}); };
-  const auto text = file.metadata().find(kProgressKey);
-  if (text == file.metadata().end()) fail("not a checkpoint: it does not say where the training stands");
-  const auto json = nlohmann::json::parse(text->second, nullptr, /*allow_exceptions=*/false);
+  const nlohmann::json json = metadata_json(file, kProgressKey);
   for_each_progress_field(progress_, [&](const char* key, auto& value) {
-    if (!json.is_object() || !json.contains(key) || !json[key].is_number())
-      fail("not a checkpoint: no " + in_quotes(key));
+    constexpr bool kWhole = std::is_integral_v<std::remove_reference_t<decltype(value)>>;
+    const bool good =
+        json.is_object() && json.contains(key) && (kWhole ? json[key].is_number_unsigned() : json[key].is_number());
+    if (!good) fail("not a checkpoint: no " + in_quotes(key));
     json[key].get_to(value);
   });
+  if (progress_.episode > options_.episodes || progress_.window_episodes > progress_.episode) {
+    fail("the checkpoint is not of this run: it has done more episodes than there are");
+  }
   learner_.restore(file);
-  replay_.restore(file);
+  replay_.restore(file, [&](const Transition& t) {
+    if (t.world < 0 || t.world >= std::ssize(worlds_)) return false;
+    const auto inside = [&](NodeId node) { return node >= 0 && node < worlds_[t.world].graph().node_count(); };
+    return inside(t.position) && inside(t.next_position) && t.action >= 0 && t.action < kActionCount;
+  });
   const auto random = file.get<std::uint64_t>("random.state", {4});
   Rng::State state{};
   std::copy(random.begin(), random.end(), state.begin());
+  if (state == Rng::State{}) fail("the checkpoint holds no random state");
   rng_ = Rng(state);
   restore_episode(file);
 }
 
 void Trainer::restore_episode(const Safetensors& file) {
-  const auto entry = std::find_if(file.entries().begin(), file.entries().end(),
-                                  [](const Safetensors::Entry& candidate) { return candidate.name == "episode"; });
-  const auto stored = file.get<std::int32_t>("episode", entry == file.entries().end() ? Shape{0} : entry->shape);
+  const auto stored = file.get<std::int32_t>("episode", file.shape_of("episode"));
   if (stored.empty()) return;
   const auto fail = [&] { throw Error({.what = "the episode under way cannot be walked", .where = file.source()}); };
   if (stored.size() < 2 || stored[0] < 0 || stored[0] >= std::ssize(worlds_)) fail();
-  world_ = stored[0];
+  begin_episode_at(stored[0], stored[1]);
   Episode& episode = episodes_[world_];
-  episode.reset(stored[1]);
-  features_.resize(static_cast<std::size_t>(worlds_[world_].graph().node_count()) * kFeatureCount);
-  encoders_[world_].begin(stored[1], features_);
   for (const std::int32_t action : std::span(stored).subspan(2)) {
     if (action < 0 || action >= kActionCount || episode.done()) fail();
     const NodeId from = episode.position();
@@ -305,7 +352,6 @@ void Trainer::restore_episode(const Safetensors& file) {
     actions_.push_back(action);
     episode_reward_ += step.reward;
   }
-  in_episode_ = true;
 }
 
 }  // namespace graphdrl

@@ -54,17 +54,18 @@ class Trainer {
   const TrainingProgress& progress() const { return progress_; }
 
  private:
-  Trainer(const TrainOptions& options, RunDirectory run);  // touches no file
+  Trainer(const TrainOptions& options, RunDirectory run, std::vector<World> worlds);  // touches no file
 
   void begin_episode();
+  void begin_episode_at(int world, NodeId start);
   int choose_action();
   void remember(int action, const StepResult& step, NodeId from);
   void learn();
   void end_episode();
-  void log(MetricsFile& metrics, EventWriter& events);
-  void show(ProgressDisplay& display, bool always);
+  MetricsLine window_means() const;
+  void log(const MetricsLine& line, MetricsFile& metrics, EventWriter& events);
   void save();
-  void restore();
+  void restore(const Safetensors& file);
   void restore_episode(const Safetensors& file);
 
   TrainOptions options_;
@@ -88,8 +89,6 @@ class Trainer {
   GraphBatch single_;
   Minibatch minibatch_;
   std::vector<std::uint16_t> next_visits_;
-  MetricsLine last_line_{};
-  std::int64_t steps_before_session_ = 0;
 };
 
 }  // namespace graphdrl
