@@ -79,7 +79,7 @@ EpisodeOptions episode_options(const TrainOptions& options, const World& world) 
 void write_config(const std::filesystem::path& path, const TrainOptions& options) {
   nlohmann::ordered_json json;
   for_each_field(options, [&](const char* key, const auto& value, const char*) { json[key] = value; });
-  write_file(path, json.dump(2) + '\n');
+  write_file(path, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }
 
 TrainOptions read_config(const std::filesystem::path& path) {

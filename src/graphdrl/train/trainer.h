@@ -65,6 +65,7 @@ class Trainer {
   MetricsLine window_means() const;
   void log(const MetricsLine& line, MetricsFile& metrics, EventWriter& events);
   void save();
+  static std::vector<World> unpack_worlds(const Safetensors& file);
   void restore(const Safetensors& file);
   void restore_episode(const Safetensors& file);
 
