@@ -71,6 +71,9 @@ std::vector<double> reference(const GraphBatch& batch, GatedGraphConvShape shape
     }
     h = next;
   }
+  if (shape.elu) {
+    for (double& value : h) value = value > 0 ? value : std::expm1(value);
+  }
   return h;
 }
 
@@ -90,7 +93,7 @@ class GatedGraphConvTest : public ::testing::Test {
 
 TEST_F(GatedGraphConvTest, ForwardIsThePapersFormula) {
   Rng rng(1);
-  for (const GatedGraphConvShape shape : {GatedGraphConvShape{3, 5, 3}, {4, 4, 1}, {1, 6, 2}}) {
+  for (const GatedGraphConvShape shape : {GatedGraphConvShape{3, 5, 3}, {4, 4, 1}, {1, 6, 2, true}}) {
     Weights<double> w(shape);
     for (auto* values : w.all()) fill(*values, rng, 0.5);
     std::vector<double> x(static_cast<std::size_t>(batch_.node_count()) * shape.inputs);
@@ -131,7 +134,7 @@ TEST_F(GatedGraphConvTest, FloatIsCloseToDouble) {
 
 TEST_F(GatedGraphConvTest, BackwardIsTheFiniteDifference) {
   Rng rng(3);
-  for (const GatedGraphConvShape shape : {GatedGraphConvShape{3, 5, 3}, {4, 4, 1}}) {
+  for (const GatedGraphConvShape shape : {GatedGraphConvShape{3, 5, 3}, {4, 4, 1, true}}) {
     Weights<double> w(shape);
     for (auto* values : w.all()) fill(*values, rng, 0.5);
     std::vector<double> x(static_cast<std::size_t>(batch_.node_count()) * shape.inputs);
@@ -139,9 +142,9 @@ TEST_F(GatedGraphConvTest, BackwardIsTheFiniteDifference) {
     std::vector<double> grad_out(static_cast<std::size_t>(batch_.node_count()) * shape.width);
     fill(grad_out, rng, 1);
     GatedGraphConv<double> layer(shape);
+    std::vector<double> out(grad_out.size());
     const auto loss = [&] {  // Σ grad_out · out
       layer.set_weights(w.const_views());
-      std::vector<double> out(grad_out.size());
       layer.forward(batch_, x.data(), out.data(), true);
       double sum = 0;
       for (std::size_t i = 0; i < out.size(); ++i) sum += grad_out[i] * out[i];
@@ -150,7 +153,7 @@ TEST_F(GatedGraphConvTest, BackwardIsTheFiniteDifference) {
     loss();
     Weights<double> grad(shape);
     std::vector<double> grad_x(x.size());
-    layer.backward(batch_, grad_out.data(), grad_x.data(), grad.views());
+    layer.backward(batch_, out.data(), grad_out.data(), grad_x.data(), grad.views());
     const auto check = [&](std::vector<double>& values, const std::vector<double>& gradient) {
       for (std::size_t i = 0; i < values.size(); i += 1 + values.size() / 40) {
         constexpr double kStep = 1e-5;
@@ -169,7 +172,7 @@ TEST_F(GatedGraphConvTest, BackwardIsTheFiniteDifference) {
 }
 
 TEST_F(GatedGraphConvTest, AnyNumberOfThreadsGivesTheSameBytes) {
-  const GatedGraphConvShape shape{7, 32, 4};
+  const GatedGraphConvShape shape{7, 32, 4, true};
   Rng rng(4);
   Weights<float> w(shape);
   for (auto* values : w.all()) fill(*values, rng, 0.3);
@@ -186,7 +189,7 @@ TEST_F(GatedGraphConvTest, AnyNumberOfThreadsGivesTheSameBytes) {
     layer.forward(batch_, x.data(), result.data(), true);
     Weights<float> grad(shape);
     std::vector<float> grad_x(x.size());
-    layer.backward(batch_, grad_out.data(), grad_x.data(), grad.views());
+    layer.backward(batch_, result.data(), grad_out.data(), grad_x.data(), grad.views());
     for (auto* values : grad.all()) result.insert(result.end(), values->begin(), values->end());
     result.insert(result.end(), grad_x.begin(), grad_x.end());
     results.push_back(result);

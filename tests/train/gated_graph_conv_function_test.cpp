@@ -34,7 +34,7 @@ TEST(GatedGraphConvFunction, IsTheComposedOperatorForwardAndBackward) {
   const std::vector<Graph> graphs = {Graph::grid(5, 5), Graph::grid(3, 4), Graph::grid(11, 10), Graph::grid(1, 1)};
   GraphBatch batch;
   for (const Graph& graph : graphs) batch.add(graph);
-  for (const GatedGraphConvShape shape : {GatedGraphConvShape{7, 7, 4}, {7, 64, 4}, {3, 5, 1}}) {
+  for (const GatedGraphConvShape shape : {GatedGraphConvShape{7, 7, 4}, {7, 64, 4, true}, {3, 5, 1}}) {
     const auto leaf = [](torch::IntArrayRef size) { return (torch::rand(size) * 0.6 - 0.3).requires_grad_(true); };
     const std::int64_t width = shape.width;
     const GatedGraphConvLeaves leaves{leaf({shape.steps, width, width}), leaf({3 * width, width}),
@@ -43,7 +43,8 @@ TEST(GatedGraphConvFunction, IsTheComposedOperatorForwardAndBackward) {
     const torch::Tensor weighting = torch::randn({batch.node_count(), width});
     const std::vector<torch::Tensor> inputs = {x, leaves.weight, leaves.w_ih, leaves.w_hh, leaves.b_ih, leaves.b_hh};
 
-    const torch::Tensor expected = composed(batch, x, leaves);
+    torch::Tensor expected = composed(batch, x, leaves);
+    if (shape.elu) expected = torch::elu(expected);
     const auto expected_grads = torch::autograd::grad({(expected * weighting).sum()}, inputs);
 
     GatedGraphConv<float> layer(shape);

@@ -10,5 +10,6 @@ int main(int argc, char** argv) {
   graphdrl::add_evaluate_command(app);
   graphdrl::add_inspect_command(app);
   graphdrl::add_maps_command(app);
+  graphdrl::add_bench_command(app);
   return graphdrl::run_program(app, argc, argv);
 }

@@ -16,7 +16,7 @@ constexpr const char* kTrainProgram = "graphdrl-train";
 
 // Becomes graphdrl-train, which links LibTorch; it stands beside this program. Signals and the exit status are its own.
 [[noreturn]] void become_trainer(const std::vector<std::string>& arguments) {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / kTrainProgram;
+  const std::filesystem::path program = trainer_program();
   std::vector<char*> argv = {const_cast<char*>(kTrainProgram)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -27,6 +27,10 @@ constexpr const char* kTrainProgram = "graphdrl-train";
 }
 
 }  // namespace
+
+std::filesystem::path trainer_program() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / kTrainProgram;
+}
 
 void add_train_command(CLI::App& app) {
   CLI::App* const command =

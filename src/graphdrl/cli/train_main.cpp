@@ -9,7 +9,9 @@
 #include <sstream>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/parallel.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/train/learning_step_bench.h"
 #include "graphdrl/train/trainer.h"
 
 namespace graphdrl {
@@ -131,7 +133,15 @@ int main_program(int argc, char** argv) {
   app.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
   app.config_formatter(std::make_shared<ConfigReader>());
   app.allow_config_extras(CLI::config_extras_mode::error);
-  app.callback([command, new_run, resume] {
+  // What `graphdrl bench` runs this program for.
+  bool bench = false;
+  app.add_flag("--bench-learning-step", bench)->group("");
+  app.callback([command, new_run, resume, &bench] {
+    if (bench) {
+      const LearningStepTime time = time_learning_step(threads());
+      print_json({{"learning_step_ms", time.step_ms}, {"gemm_ms", time.gemm_ms}});
+      return;
+    }
     for (const CLI::Option* const option : new_run) {
       if (resume->count() > 0 && option->count() > 0) {
         throw Error({.what = option->get_name() + " does not go with --resume",

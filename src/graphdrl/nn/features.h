@@ -24,6 +24,8 @@ class FeatureEncoder {
   // Throws Error where the world is no grid: x, y and wall need one.
   explicit FeatureEncoder(const World& world);
 
+  const World& world() const { return *world_; }
+
   // out: [N, F]. From scratch: O(N + edges of visited nodes).
   template <typename Count>
   void encode(NodeId position, std::span<const Count> visits, std::span<float> out) const;

@@ -127,10 +127,11 @@ void GatedGraphConv<T>::forward_chunk(const GraphBatch& batch, const Chunk& chun
     T* const next = step + 1 == shape_.steps ? out + first : state_.data() + (step + 1) * stride + first;
     gru_forward(rows, width, gates, h, next);
   }
+  if (shape_.elu) elu(out + first, static_cast<std::size_t>(rows) * width);
 }
 
 template <typename T>
-void GatedGraphConv<T>::backward(const GraphBatch& batch, const T* grad_out, T* grad_x,
+void GatedGraphConv<T>::backward(const GraphBatch& batch, const T* out, const T* grad_out, T* grad_x,
                                  const GatedGraphConvTensors<T>& grad) {
   const int nodes = batch.node_count();
   const std::size_t values = static_cast<std::size_t>(nodes) * shape_.width;
@@ -139,14 +140,15 @@ void GatedGraphConv<T>::backward(const GraphBatch& batch, const T* grad_out, T* 
   folded_grad_.resize(folded_.size());
   bias_grad_.resize(shape_.steps * bias_.size());
   parallel_for(static_cast<int>(chunks_.size()),
-               [&](int index) { backward_chunk(batch, chunks_[index], grad_out, grad_x); });
+               [&](int index) { backward_chunk(batch, chunks_[index], out, grad_out, grad_x); });
   weight_products(nodes, grad);
   unfold(grad);
   sum_biases(nodes, grad);
 }
 
 template <typename T>
-void GatedGraphConv<T>::backward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* grad_out, T* grad_x) {
+void GatedGraphConv<T>::backward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* out, const T* grad_out,
+                                       T* grad_x) {
   const int width = shape_.width;
   const int rows = chunk.node_count;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(chunk.first_node) * width;
@@ -154,6 +156,7 @@ void GatedGraphConv<T>::backward_chunk(const GraphBatch& batch, const Chunk& chu
   T* const grad = grad_.data() + first;
   T* const by_message = scratch_.data() + first;
   std::copy(grad_out + first, grad_out + first + static_cast<std::ptrdiff_t>(rows) * width, grad);
+  if (shape_.elu) elu_backward(out + first, grad, static_cast<std::size_t>(rows) * width);
   for (int step = shape_.steps - 1; step >= 0; --step) {
     const int live = live_columns(step);
     T* const gates = gates_.data() + 4 * (step * stride + first);

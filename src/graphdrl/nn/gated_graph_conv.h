@@ -1,6 +1,7 @@
 // The gated graph convolution [Li et al. 2015; paper, eq. 7], forward and backward, with the semantics of PyTorch
 // Geometric's GatedGraphConv: the input is padded with zeros to the layer's width; then, for l = 0 … L-1,
 //   m_i = Σ_{j in N(i)} h_j Θ_l,   h = GRU(m, h),
+// and at the end, where the layer is asked to, ELU(h), while it is still in cache;
 // with one Θ_l per step, one GRU cell for all steps, biases also where a node has no neighbour.
 //
 // How it is computed: a step is gates = (A h) P_l + h W_hhᵀ + b with P_l = Θ_l W_ihᵀ, folded once per set of weights,
@@ -27,9 +28,10 @@ struct GatedGraphConvTensors {
 };
 
 struct GatedGraphConvShape {
-  int inputs;  // F <= D
-  int width;   // D
-  int steps;   // L >= 1
+  int inputs;        // F <= D
+  int width;         // D
+  int steps;         // L >= 1
+  bool elu = false;  // of the output
 };
 
 // One layer's folded weights and what it keeps from forward to backward; memory grows to the largest batch seen and is
@@ -46,9 +48,10 @@ class GatedGraphConv {
   // REQUIRES: set_weights() was called; every graph is undirected.
   void forward(const GraphBatch& batch, const T* x, T* out, bool keep);
 
-  // After forward(batch, …, keep = true), once. grad_out: [N, D]; grad_x: [N, F] or null where nobody asks for it; the
-  // gradients of the weights are overwritten.
-  void backward(const GraphBatch& batch, const T* grad_out, T* grad_x, const GatedGraphConvTensors<T>& grad);
+  // After forward(batch, …, keep = true), once. out, grad_out: [N, D], the output and the loss's derivative by it;
+  // grad_x: [N, F] or null where nobody asks for it; the gradients of the weights are overwritten.
+  void backward(const GraphBatch& batch, const T* out, const T* grad_out, T* grad_x,
+                const GatedGraphConvTensors<T>& grad);
 
  private:
   struct Chunk {
@@ -60,7 +63,7 @@ class GatedGraphConv {
 
   void cut_into_chunks(const GraphBatch& batch);
   void forward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* x, T* out, bool keep);
-  void backward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* grad_out, T* grad_x);
+  void backward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* out, const T* grad_out, T* grad_x);
   void weight_products(int nodes, const GatedGraphConvTensors<T>& grad);
   void unfold(const GatedGraphConvTensors<T>& grad);
   void sum_biases(int nodes, const GatedGraphConvTensors<T>& grad);

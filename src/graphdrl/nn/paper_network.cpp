@@ -27,7 +27,7 @@ std::vector<TensorSpec> make_specs() {
   };
   const auto conv = [](std::size_t layer) { return fmt::format("conv{}", layer + 1); };
   for (std::size_t layer = 0; layer < kConvShapes.size(); ++layer) {
-    const auto [inputs, width, steps] = kConvShapes[layer];
+    const auto [inputs, width, steps, elu] = kConvShapes[layer];
     add(conv(layer) + ".weight", {steps, width, width}, true);
     add(conv(layer) + ".rnn.weight_ih", {3 * width, width}, true);
     add(conv(layer) + ".rnn.weight_hh", {3 * width, width}, true);
@@ -64,7 +64,7 @@ float initial_bound(const TensorSpec& spec) {
 // Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
 nlohmann::json network_description() {
   nlohmann::json layers = nlohmann::json::array();
-  for (const auto [inputs, width, steps] : kConvShapes) {
+  for (const auto [inputs, width, steps, elu] : kConvShapes) {
     layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
   }
   layers.push_back({{"type", "linear"}, {"inputs", kPooledWidth}, {"width", kHiddenWidth}});
@@ -213,7 +213,6 @@ void PaperNetwork::q_values(const GraphBatch& batch, std::span<const float> x, s
     std::vector<float>& output = outputs_[layer - 1];
     output.resize(static_cast<std::size_t>(nodes) * kConvShapes[layer - 1].width);
     conv(layer).forward(batch, input, output.data(), /*keep=*/false);
-    elu(output.data(), output.size());
     if (layer < 3) normalise(layer, output);
     input = output.data();
   }

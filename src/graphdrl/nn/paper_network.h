@@ -19,7 +19,8 @@
 
 namespace graphdrl {
 
-inline constexpr std::array<GatedGraphConvShape, 3> kConvShapes = {{{7, 7, 4}, {7, 64, 4}, {64, 128, 4}}};
+inline constexpr std::array<GatedGraphConvShape, 3> kConvShapes = {
+    {{7, 7, 4, true}, {7, 64, 4, true}, {64, 128, 4, true}}};
 inline constexpr int kHiddenWidth = 256;
 inline constexpr int kActionCount = 4;  // left, up, right, down
 inline constexpr double kBatchNormEpsilon = 1e-5;

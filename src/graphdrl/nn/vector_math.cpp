@@ -100,6 +100,18 @@ GRAPHDRL_INLINE void gru_backward_rows(int rows, int width, T* gates, const T* h
   }
 }
 
+template <typename T>
+GRAPHDRL_INLINE void elu_values(T* x, std::size_t count) {
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) x[i] = x[i] > 0 ? x[i] : exponential(x[i]) - T{1};
+}
+
+template <typename T>
+GRAPHDRL_INLINE void elu_backward_values(const T* y, T* grad, std::size_t count) {
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) grad[i] = y[i] > 0 ? grad[i] : grad[i] * (y[i] + T{1});
+}
+
 }  // namespace
 
 GRAPHDRL_VECTOR_CLONES
@@ -122,8 +134,20 @@ void gru_backward(int rows, int width, double* gates, const double* h, double* g
 
 GRAPHDRL_VECTOR_CLONES
 void elu(float* x, std::size_t count) {
-#pragma omp simd
-  for (std::size_t i = 0; i < count; ++i) x[i] = x[i] > 0 ? x[i] : exponential(x[i]) - 1.0f;
+  elu_values(x, count);
+}
+
+void elu(double* x, std::size_t count) {
+  elu_values(x, count);
+}
+
+GRAPHDRL_VECTOR_CLONES
+void elu_backward(const float* y, float* grad, std::size_t count) {
+  elu_backward_values(y, grad, count);
+}
+
+void elu_backward(const double* y, double* grad, std::size_t count) {
+  elu_backward_values(y, grad, count);
 }
 
 }  // namespace graphdrl

@@ -22,5 +22,10 @@ void gru_backward(int rows, int width, double* gates, const double* h, double* g
 
 // x = x > 0 ? x : exp(x) - 1  [Clevert et al. 2015]
 void elu(float* x, std::size_t count);
+void elu(double* x, std::size_t count);
+
+// grad, by elu(x) in, by x out; y: elu(x)
+void elu_backward(const float* y, float* grad, std::size_t count);
+void elu_backward(const double* y, double* grad, std::size_t count);
 
 }  // namespace graphdrl

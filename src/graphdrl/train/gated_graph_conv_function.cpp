@@ -17,10 +17,10 @@ class GatedGraphConvFunction : public torch::autograd::Function<GatedGraphConvFu
     context->saved_data["layer"] = reinterpret_cast<std::int64_t>(layer);
     context->saved_data["batch"] = reinterpret_cast<std::int64_t>(batch);
     context->saved_data["x_needs_grad"] = x.requires_grad();
-    context->save_for_backward({x, weight, w_ih, w_hh, b_ih, b_hh});  // for their shapes
     const torch::Tensor input = x.contiguous();
     torch::Tensor out = torch::empty({x.size(0), weight.size(1)});
     layer->forward(*batch, input.data_ptr<float>(), out.data_ptr<float>(), /*keep=*/true);
+    context->save_for_backward({out, x, weight, w_ih, w_hh, b_ih, b_hh});  // the inputs for their shapes
     return out;
   }
 
@@ -30,9 +30,10 @@ class GatedGraphConvFunction : public torch::autograd::Function<GatedGraphConvFu
     const bool x_needs_grad = context->saved_data["x_needs_grad"].toBool();
     const torch::Tensor grad_out = grad_outputs[0].contiguous();
     variable_list grads = {{}, {}};  // the layer and the batch have none
-    for (const Variable& input : context->get_saved_variables()) grads.push_back(torch::empty_like(input));
+    const variable_list saved = context->get_saved_variables();
+    for (std::size_t i = 1; i < saved.size(); ++i) grads.push_back(torch::empty_like(saved[i]));
     const auto data = [&](int index) { return grads[index].data_ptr<float>(); };
-    layer->backward(*batch, grad_out.data_ptr<float>(), x_needs_grad ? data(2) : nullptr,
+    layer->backward(*batch, saved[0].data_ptr<float>(), grad_out.data_ptr<float>(), x_needs_grad ? data(2) : nullptr,
                     {.weight = data(3), .w_ih = data(4), .w_hh = data(5), .b_ih = data(6), .b_hh = data(7)});
     if (!x_needs_grad) grads[2] = torch::Tensor();
     return grads;

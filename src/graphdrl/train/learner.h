@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "graphdrl/nn/graph_batch.h"
+#include "graphdrl/train/minibatch.h"
 #include "graphdrl/train/q_network.h"
 
 namespace torch::optim {
@@ -21,16 +21,6 @@ struct LearnerOptions {
   double learning_rate = 1e-3;  // Adam's
   double soft_update = 1e-3;    // beta
   double dropout = 0.5;
-};
-
-// A sample of the replay buffer, encoded. s and s' of a transition lie in the same graph.
-struct Minibatch {
-  GraphBatch graphs;
-  std::vector<float> x;                // s:  [N, F]
-  std::vector<float> next_x;           // s': [N, F]
-  std::vector<std::int64_t> actions;   // [B]
-  std::vector<float> rewards;          // [B]
-  std::vector<std::uint8_t> terminal;  // [B], 0 or 1
 };
 
 // The online and the target network and the optimiser. Everything it does is the same for any number of threads.

@@ -169,33 +169,8 @@ void Trainer::remember(int action, const StepResult& step, NodeId from) {
 
 void Trainer::learn() {
   if (replay_.size() <= static_cast<std::size_t>(options_.batch_size)) return;
-  Minibatch& batch = minibatch_;
-  batch.graphs.clear();
-  batch.x.clear();
-  batch.next_x.clear();
-  batch.actions.clear();
-  batch.rewards.clear();
-  batch.terminal.clear();
-  for (std::int64_t i = 0; i < options_.batch_size; ++i) {
-    const std::size_t index = rng_.below(static_cast<std::uint32_t>(replay_.size()));
-    const Transition& t = replay_.transition(index);
-    const Graph& graph = worlds_[t.world].graph();
-    const std::size_t row = batch.x.size();
-    const std::size_t values = static_cast<std::size_t>(graph.node_count()) * kFeatureCount;
-    batch.graphs.add(graph);
-    batch.x.resize(row + values);
-    batch.next_x.resize(row + values);
-    const auto visits = replay_.visits(index).first(graph.node_count());
-    encoders_[t.world].encode(t.position, visits, std::span(batch.x).subspan(row));
-    next_visits_.assign(visits.begin(), visits.end());
-    ++next_visits_[t.next_position];
-    encoders_[t.world].encode(t.next_position, std::span<const std::uint16_t>(next_visits_),
-                              std::span(batch.next_x).subspan(row));
-    batch.actions.push_back(t.action);
-    batch.rewards.push_back(t.reward);
-    batch.terminal.push_back(t.terminal);
-  }
-  const double loss = learner_.learn(batch, rng_);
+  sample_minibatch(replay_, encoders_, options_.batch_size, rng_, minibatch_);
+  const double loss = learner_.learn(minibatch_, rng_);
   if (!std::isfinite(loss)) {
     throw std::runtime_error(
         fmt::format("the loss is not finite at step {}: try a smaller --learning-rate", progress_.steps));

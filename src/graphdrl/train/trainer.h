@@ -12,6 +12,7 @@
 #include "graphdrl/report/metrics_file.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/learner.h"
+#include "graphdrl/train/minibatch.h"
 #include "graphdrl/train/replay_buffer.h"
 #include "graphdrl/train/run_directory.h"
 #include "graphdrl/train/train_options.h"
@@ -89,7 +90,6 @@ class Trainer {
   std::vector<std::uint32_t> visits_before_;  // the step under way
   GraphBatch single_;
   Minibatch minibatch_;
-  std::vector<std::uint16_t> next_visits_;
 };
 
 }  // namespace graphdrl

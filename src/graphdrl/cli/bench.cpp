@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/eval/bench.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::array kThreadCounts = {1, 2};
+constexpr int kRounds = 5;
+
+struct LearningStep {
+  double step_ms;
+  double gemm_ms;
+};
+
+// Asks the trainer, which links LibTorch; empty where it is not installed.
+std::optional<LearningStep> time_learning_step(int threads) {
+  const std::filesystem::path trainer = trainer_program();
+  if (!std::filesystem::exists(trainer)) return std::nullopt;
+  std::string path;
+  for (const char c : trainer.string()) path += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  const std::string command = fmt::format("'{}' --bench-learning-step --threads {}", path, threads);
+  const std::unique_ptr<FILE, int (*)(FILE*)> output(popen(command.c_str(), "r"), pclose);
+  std::string text;
+  std::array<char, 4096> block{};
+  while (output && std::fgets(block.data(), block.size(), output.get()) != nullptr) text += block.data();
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) return std::nullopt;
+  return LearningStep{.step_ms = json["learning_step_ms"], .gemm_ms = json["gemm_ms"]};
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
+  return values[values.size() / 2];
+}
+
+Json run_bench() {
+  std::uint64_t signature = 0;
+  std::array<std::vector<double>, kThreadCounts.size()> steps_per_s;
+  for (int round = 0; round < kRounds; ++round) {  // alternating, so that a change of the machine's speed meets all
+    for (std::size_t i = 0; i < kThreadCounts.size(); ++i) {
+      set_threads(kThreadCounts[i]);
+      const EnvironmentBench result = bench_environment();
+      steps_per_s[i].push_back(result.steps_per_s);
+      if (signature != 0 && signature != result.signature) throw std::logic_error("the signature depends on threads");
+      signature = result.signature;
+    }
+  }
+  set_threads(1);
+  Json json;
+  json["signature"] = fmt::format("{:016x}", signature ^ planner_signature());
+  for (std::size_t i = 0; i < kThreadCounts.size(); ++i) {
+    json["env_steps_per_s"][std::to_string(kThreadCounts[i])] = median(steps_per_s[i]);
+  }
+  json["move_ms"] = bench_move_ms();
+  json["learning_step_ms"] = Json::object();
+  json["gemm_share"] = Json::object();
+  for (const int count : kThreadCounts) {
+    const auto time = time_learning_step(count);
+    const std::string key = std::to_string(count);
+    json["learning_step_ms"][key] = time ? Json(time->step_ms) : Json();
+    json["gemm_share"][key] = time ? Json(time->gemm_ms / time->step_ms) : Json();
+  }
+  return json;
+}
+
+std::string format_bench(const Json& json) {
+  const auto number = [](const Json& value, double scale, const char* unit) {
+    return value.is_null() ? std::string("–") : fmt::format("{:.2f}{}", value.get<double>() * scale, unit);
+  };
+  std::string text = fmt::format("signature             {}\n", json["signature"].get<std::string>());
+  const auto line = [&](const char* name, const char* key, double scale, const char* unit) {
+    text += fmt::format("{:20}  {} (1 thread)  {} (2 threads)\n", name, number(json[key]["1"], scale, unit),
+                        number(json[key]["2"], scale, unit));
+  };
+  line("environment steps", "env_steps_per_s", 1e-6, " million/s");
+  text += fmt::format("{:20}  {}\n", "choosing one move", number(json["move_ms"], 1, " ms"));
+  line("learning step", "learning_step_ms", 1, " ms");
+  line("of it bare sgemm", "gemm_share", 100, " %");
+  return text;
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app) {
+  CLI::App* const command =
+      app.add_subcommand("bench", "Time a fixed workload, and print a signature that changes only when behaviour does");
+  const auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "Print one JSON document");
+  command->callback([json] {
+    const Json result = run_bench();
+    if (*json) {
+      print_json(result);
+    } else {
+      print_text(format_bench(result));
+    }
+  });
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,125 @@
+#include "graphdrl/eval/bench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/env/vector_env.h"
+#include "graphdrl/eval/rollout.h"
+#include "graphdrl/nn/features.h"
+#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/planners/registry.h"
+
+namespace graphdrl {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kEpisodes = 1024;     // side by side
+constexpr int kStepsPerVisit = 25;  // of one episode before the next one's turn
+constexpr int kRounds = 200;
+constexpr int kMoves = 300;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// FNV-1a, word by word.
+class Signature {
+ public:
+  void add(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001b3ULL; }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+};
+
+// One of the episodes side by side, with what a learner keeps beside it.
+struct Runner {
+  explicit Runner(std::uint64_t seed) : rng(seed) {}
+
+  Rng rng;
+  std::vector<float> features;  // [N, F]
+  std::int64_t tenths = 0;      // sum of rewards, in tenths: an integer
+};
+
+void reset(const World& world, const FeatureEncoder& encoder, Runner& runner, Episode& episode) {
+  const NodeId start = world.valid_nodes()[runner.rng.below(static_cast<std::uint32_t>(world.valid_count()))];
+  episode.reset(start);
+  encoder.begin(start, runner.features);
+}
+
+}  // namespace
+
+EnvironmentBench bench_environment() {
+  const World world = load_one_world("paper:a");
+  const FeatureEncoder encoder(world);
+  VectorEnv env(world, {}, kEpisodes);
+  std::vector<Runner> runners;
+  for (int i = 0; i < kEpisodes; ++i) {
+    runners.emplace_back(derive_seed(1, 0, static_cast<std::uint64_t>(i)));
+    runners.back().features.resize(static_cast<std::size_t>(world.graph().node_count()) * kFeatureCount);
+    reset(world, encoder, runners.back(), env[i]);
+  }
+  const auto start = Clock::now();
+  for (int round = 0; round < kRounds; ++round) {
+    env.for_each([&](int index, Episode& episode) {
+      Runner& runner = runners[index];
+      for (int i = 0; i < kStepsPerVisit; ++i) {
+        if (episode.done()) reset(world, encoder, runner, episode);
+        const NodeId from = episode.position();
+        const StepResult step = episode.step(static_cast<int>(runner.rng.below(kActionCount)));
+        encoder.update(from, episode.position(), step, runner.features);
+        runner.tenths += std::lround(10 * step.reward);
+      }
+    });
+  }
+  const double elapsed_s = seconds_since(start);
+  Signature signature;
+  for (int i = 0; i < kEpisodes; ++i) {
+    signature.add(static_cast<std::uint64_t>(env[i].position()));
+    signature.add(static_cast<std::uint64_t>(runners[i].tenths));
+    for (const std::uint32_t visits : env[i].visits()) signature.add(visits);
+    for (const float value : runners[i].features) signature.add(static_cast<std::uint64_t>(value));
+  }
+  const double steps = static_cast<double>(kEpisodes) * kStepsPerVisit * kRounds;
+  return {.steps_per_s = steps / elapsed_s, .signature = signature.value()};
+}
+
+std::uint64_t planner_signature() {
+  Signature signature;
+  for (const World& world : load_worlds({"paper"})) {
+    for (const char* name : {"random", "random-walk", "dfs", "nearest", "exact"}) {
+      const auto policy = make_policy(name, 1);
+      for (const RolloutResult& result : roll_out(world, world.valid_nodes(), {}, *policy)) {
+        for (const NodeId node : result.walk) signature.add(static_cast<std::uint64_t>(node));
+      }
+    }
+  }
+  return signature.value();
+}
+
+double bench_move_ms() {
+  const World world = load_one_world("paper:a");
+  Rng rng(1);
+  NetworkPolicy policy{PaperParameters(rng)};
+  std::vector<double> times_ms;
+  Episode episode(world, {});
+  episode.reset(0);
+  for (int i = 0; i < kMoves; ++i) {
+    if (episode.done()) episode.reset(0);
+    const Observation observation = episode.observation();
+    int action = 0;
+    const auto start = Clock::now();
+    policy.act({&observation, 1}, {&action, 1});
+    times_ms.push_back(1e3 * seconds_since(start));
+    episode.step(static_cast<int>(rng.below(kActionCount)));
+  }
+  std::nth_element(times_ms.begin(), times_ms.begin() + kMoves / 2, times_ms.end());
+  return times_ms[kMoves / 2];
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,22 @@
+// A fixed, seeded workload: how fast episodes are stepped and moves are chosen, and a signature of what happened.
+#pragma once
+
+#include <cstdint>
+
+namespace graphdrl {
+
+struct EnvironmentBench {
+  double steps_per_s;       // random moves with all seven features kept up to date, resets included; by all threads
+  std::uint64_t signature;  // of every episode's last position, visits and reward: the same for any number of threads
+};
+
+// On as many threads as parallel_for uses.
+EnvironmentBench bench_environment();
+
+// The walks of the deterministic planners on the paper's maps, as one number.
+std::uint64_t planner_signature();
+
+// Median time to choose one move on the paper's map a with a network of random weights, features built from scratch.
+double bench_move_ms();
+
+}  // namespace graphdrl

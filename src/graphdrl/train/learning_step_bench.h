@@ -1,0 +1,15 @@
+// How long a learning step of the preset `paper` takes, and how much of that its matrix products alone would.
+#pragma once
+
+namespace graphdrl {
+
+// Medians over alternating rounds of one run, in milliseconds.
+struct LearningStepTime {
+  double step_ms;  // sample, features, both forward passes, backward, Adam, soft update
+  double gemm_ms;  // the bare sgemm calls of such a step, at their own shapes, spread over the same threads
+};
+
+// On `threads` threads. Takes some seconds.
+LearningStepTime time_learning_step(int threads);
+
+}  // namespace graphdrl
