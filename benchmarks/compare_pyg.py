@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Our learning step beside the same step in PyTorch Geometric and in plain PyTorch.
 
-The same weights, the same batch of 32 states of the paper's map a and the same number of threads; the three take turns within
-one run, and their losses must agree before anything is timed. A step is: both forward passes, loss, backward, clamp, Adam, soft
-update; sampling and building batches are left out on all sides. benchmarks/compare_pyg sets up and runs this.
+The same weights, the same replay buffer of states of the paper's map a and the same number of threads; the three take turns
+within one run, and their losses must agree before anything is timed. A step is: sample 32 transitions, build the batch, both
+forward passes, loss, backward, clamp, Adam, soft update. benchmarks/compare_pyg sets up and runs this.
 """
 
 import argparse
@@ -20,6 +20,7 @@ import numpy
 import torch
 import torch.nn.functional as F
 from torch import nn
+from torch_geometric.data import Batch, Data
 from torch_geometric.nn import GatedGraphConv, global_add_pool
 
 DTYPES = {"F32": "<f4", "F64": "<f8", "I64": "<i8"}
@@ -79,31 +80,29 @@ class Network(nn.Module):
 
 
 class Peer:
-    """One formulation, with the batch and the weights of our side."""
+    """A formulation in PyTorch, with the replay buffer and the weights of our side."""
 
     def __init__(self, conv, t):
         self.t = t
-        self.edges = grid_edges(GRAPHS)
-        self.graph_of = torch.arange(GRAPHS).repeat_interleave(SIDE * SIDE)
         self.online = Network(conv)
         weights = {name: tensor for name, tensor in t.items() if name.split(".")[0] in dict(self.online.named_children())}
         missing = self.online.load_state_dict(weights, strict=False).missing_keys
         assert all(name.endswith("num_batches_tracked") for name in missing), missing
         self.target = copy.deepcopy(self.online).eval()
         self.adam = torch.optim.Adam(self.online.parameters(), lr=1e-3)
-        self.single_edges, self.single_graph = grid_edges(1), torch.zeros(SIDE * SIDE, dtype=torch.long)
 
-    def loss(self, keep_scale=None):
+    def loss(self, indices, keep_scale=None):
         with torch.no_grad():
-            target = self.t["rewards"] + 0.99 * self.target(self.t["next_x"], self.edges, self.graph_of).max(1)[0]
-        q = self.online(self.t["x"], self.edges, self.graph_of, keep_scale)
-        return F.mse_loss(q.gather(1, self.t["actions"][:, None]).squeeze(1), target)
+            target = self.t["rewards"][indices] + 0.99 * self.target(*self.batch("next_x", indices)).max(1)[0]
+        q = self.online(*self.batch("x", indices), keep_scale)
+        return F.mse_loss(q.gather(1, self.t["actions"][indices, None]).squeeze(1), target)
 
     def learn(self, count):
         start = time.perf_counter()
         for _ in range(count):
+            indices = torch.from_numpy(numpy.random.randint(0, len(self.t["x"]), GRAPHS))
             self.adam.zero_grad()
-            self.loss().backward()
+            self.loss(indices).backward()
             for parameter in self.online.parameters():
                 parameter.grad.clamp_(-1, 1)
             self.adam.step()
@@ -114,15 +113,39 @@ class Peer:
         return 1e3 * (time.perf_counter() - start) / count
 
     def move(self, count):
-        x = self.t["x"][: SIDE * SIDE]
         self.online.eval()
         start = time.perf_counter()
-        for _ in range(count):
+        for i in range(count):
             with torch.no_grad():
-                self.online(x, self.single_edges, self.single_graph).argmax().item()
+                self.online(*self.batch("x", [i])).argmax().item()
         elapsed = time.perf_counter() - start
         self.online.train()
         return 1e3 * elapsed / count
+
+
+class PlainPeer(Peer):
+    """States as rows of one tensor, edges and graph numbers built once."""
+
+    def __init__(self, t):
+        super().__init__(PlainGatedGraphConv, t)
+        self.edges = {count: grid_edges(count) for count in (1, GRAPHS)}
+        self.graph_of = {count: torch.arange(count).repeat_interleave(SIDE * SIDE) for count in (1, GRAPHS)}
+
+    def batch(self, key, indices):
+        return self.t[key][indices].flatten(0, 1), self.edges[len(indices)], self.graph_of[len(indices)]
+
+
+class GeometricPeer(Peer):
+    """As the author's code: states as Data objects, collected into a Batch when sampled."""
+
+    def __init__(self, t):
+        super().__init__(GatedGraphConv, t)
+        edges = grid_edges(1)
+        self.states = {key: [Data(x=x, edge_index=edges) for x in t[key]] for key in ("x", "next_x")}
+
+    def batch(self, key, indices):
+        batch = Batch.from_data_list([self.states[key][i] for i in indices])
+        return batch.x, batch.edge_index, batch.batch
 
 
 class Ours:
@@ -151,12 +174,12 @@ def compare(program, threads, rounds):
         t = read_safetensors(file)
         sides = {
             "GraphDRL": ours,
-            "plain PyTorch": Peer(PlainGatedGraphConv, t),
-            "PyTorch Geometric": Peer(GatedGraphConv, t),
+            "plain PyTorch": PlainPeer(t),
+            "PyTorch Geometric": GeometricPeer(t),
         }
         for name, side in sides.items():
             if side is not ours:
-                loss = side.loss(t["keep_scale"]).item()
+                loss = side.loss(torch.arange(GRAPHS), t["keep_scale"]).item()
                 assert abs(loss - t["loss"].item()) < 1e-4 * abs(loss), (name, loss, t["loss"].item())
         print(f"{threads} thread{'s' if threads > 1 else ''}, losses agree ({t['loss'].item():.6f})")
         for task, count in (("learn", 5), ("move", 50)):
@@ -165,6 +188,7 @@ def compare(program, threads, rounds):
                 getattr(side, task)(count)
             for _ in range(rounds):
                 for name, side in sides.items():
+                    time.sleep(0.05)  # the side before still has threads that wait in a loop
                     times[name].append(getattr(side, task)(count))
             base = times["GraphDRL"]
             for name, values in times.items():

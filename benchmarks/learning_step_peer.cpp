@@ -1,6 +1,7 @@
-// Our side of compare_pyg.py: writes a batch and weights to a file, then times what it is asked to on standard input.
+// Our side of compare_pyg.py: writes a replay buffer and weights to a file, then times what it is asked to on standard
+// input.
 //   learning_step_peer FILE THREADS
-//   "learn N" runs N learning steps on the batch, "move N" chooses N moves; the answer is milliseconds for one.
+//   "learn N" samples and learns N times, "move N" chooses N moves; the answer is milliseconds for one.
 #include <torch/torch.h>
 
 #include <chrono>
@@ -33,24 +34,35 @@ ReplayBuffer random_replay(const World& world, Rng& rng) {
   return replay;
 }
 
+// Every transition of the replay buffer, encoded, in its order.
+Minibatch whole_replay(const ReplayBuffer& replay, const FeatureEncoder& encoder) {
+  Minibatch all;
+  all.clear();
+  for (std::size_t i = 0; i < replay.size(); ++i) append_transition(replay, i, encoder, all);
+  return all;
+}
+
 int serve(const std::string& file, int threads) {
   Rng rng(7);
   const World world = load_one_world("paper:a");
   const std::vector<FeatureEncoder> encoders = {FeatureEncoder(world)};
   const ReplayBuffer replay = random_replay(world, rng);
   Learner learner({}, rng);
-  Minibatch batch;
-  sample_minibatch(replay, encoders, kBatchSize, rng, batch);
+  Minibatch batch;  // the first transitions, for the losses to agree on
+  batch.clear();
+  for (std::size_t i = 0; i < kBatchSize; ++i) append_transition(replay, i, encoders.front(), batch);
   const torch::Tensor keep_scale = draw_keep_scale(kBatchSize, kHiddenWidth, 0.5, rng);
   const PaperParameters weights = learner.online().parameters();
   const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
 
   std::vector<TensorView> tensors = weights.views();
-  const std::int64_t nodes = batch.graphs.node_count();
-  tensors.emplace_back("x", Shape{nodes, kFeatureCount}, std::span<const float>(batch.x));
-  tensors.emplace_back("next_x", Shape{nodes, kFeatureCount}, std::span<const float>(batch.next_x));
-  tensors.emplace_back("actions", Shape{kBatchSize}, std::span<const std::int64_t>(batch.actions));
-  tensors.emplace_back("rewards", Shape{kBatchSize}, std::span<const float>(batch.rewards));
+  const Minibatch all = whole_replay(replay, encoders.front());
+  const auto size = static_cast<std::int64_t>(all.actions.size());
+  const Shape states = {size, world.graph().node_count(), kFeatureCount};
+  tensors.emplace_back("x", states, std::span<const float>(all.x));
+  tensors.emplace_back("next_x", states, std::span<const float>(all.next_x));
+  tensors.emplace_back("actions", Shape{size}, std::span<const std::int64_t>(all.actions));
+  tensors.emplace_back("rewards", Shape{size}, std::span<const float>(all.rewards));
   tensors.emplace_back("keep_scale", Shape{kBatchSize, kHiddenWidth},
                        std::span<const float>(keep_scale.data_ptr<float>(), kBatchSize * kHiddenWidth));
   tensors.emplace_back("loss", Shape{1}, std::span<const double>(loss));
@@ -66,7 +78,10 @@ int serve(const std::string& file, int threads) {
     const auto start = std::chrono::steady_clock::now();
     for (int i = 0; i < count; ++i) {
       int action = 0;
-      if (what == "learn") learner.learn(batch, rng);
+      if (what == "learn") {
+        sample_minibatch(replay, encoders, kBatchSize, rng, batch);
+        learner.learn(batch, rng);
+      }
       if (what == "move") policy.act({&observation, 1}, {&action, 1});
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;

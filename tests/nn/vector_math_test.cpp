@@ -22,6 +22,7 @@ TEST(VectorMath, GruStepIsTheFormulas) {
   // Odd widths leave a remainder behind the vector code.
   for (const int width : {1, 7, 19, 64}) {
     std::vector<float> gates(4 * width);
+    std::vector<float> bias(4 * width);
     std::vector<float> h(width);
     std::vector<double> expected;
     for (int i = 0; i < width; ++i) {
@@ -29,17 +30,18 @@ TEST(VectorMath, GruStepIsTheFormulas) {
       const float r = 2 - 0.2f * static_cast<float>(i);
       const float z = 0.1f * static_cast<float>(i) - 1;
       const float hn = 1.5f - 0.1f * static_cast<float>(i);
-      gates[i] = n;
-      gates[width + i] = r;
-      gates[2 * width + i] = z;
-      gates[3 * width + i] = hn;
+      for (int gate = 0; gate < 4; ++gate) bias[gate * width + i] = 0.1f * static_cast<float>(gate + i);
+      gates[i] = n - bias[i];
+      gates[width + i] = r - bias[width + i];
+      gates[2 * width + i] = z - bias[2 * width + i];
+      gates[3 * width + i] = hn - bias[3 * width + i];
       h[i] = 0.05f * static_cast<float>(i);
       const double reset = 1 / (1 + std::exp(-static_cast<double>(r)));
       const double update = 1 / (1 + std::exp(-static_cast<double>(z)));
       const double candidate = std::tanh(n + reset * hn);
       expected.push_back((1 - update) * candidate + update * h[i]);
     }
-    gru_forward(1, width, gates.data(), h.data(), h.data());
+    gru_forward(1, width, bias.data(), gates.data(), h.data(), h.data());
     for (int i = 0; i < width; ++i) EXPECT_NEAR(h[i], expected[i], 1e-6);
   }
 }

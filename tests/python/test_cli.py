@@ -249,3 +249,17 @@ def test_network_policies_take_large_maps(run, trained, tmp_path):
     policy = trained[0] / "policy.safetensors"
     result = evaluate(run, "--maps", tmp_path / "large.txt", "--policy", policy, "--budget", "1", "--episodes", "5")
     assert result["rows"][0]["valid_nodes"] == 4900
+
+
+def test_bench_gives_the_documented_keys_and_one_signature(run, tmp_path):
+    first = json.loads(run("graphdrl", "bench", "--json").stdout)
+    assert list(first) == "signature env_steps_per_s move_ms learning_step_ms gemm_share".split()
+    for key in ("env_steps_per_s", "learning_step_ms", "gemm_share"):
+        assert list(first[key]) == ["1", "2"] and all(value > 0 for value in first[key].values())
+    assert all(share < 1 for share in first["gemm_share"].values())
+    # Without the trainer beside it, the learning step cannot be timed; the signature is the same.
+    shutil.copy(BIN / "graphdrl", tmp_path / "graphdrl")
+    process = subprocess.run([tmp_path / "graphdrl", "bench", "--json"], capture_output=True, text=True, timeout=300, check=True)
+    alone = json.loads(process.stdout)
+    assert alone["signature"] == first["signature"]
+    assert alone["learning_step_ms"] == {"1": None, "2": None} and alone["gemm_share"] == {"1": None, "2": None}

@@ -116,16 +116,16 @@ void GatedGraphConv<T>::forward_chunk(const GraphBatch& batch, const Chunk& chun
     T* const gates = gates_.data() + 4 * (step * stride + first);
     std::fill_n(message, static_cast<std::ptrdiff_t>(rows) * width, T{0});
     add_neighbours(batch, chunk.first_graph, chunk.graph_count, live, width, h, message);
+    // (A h) P_l into n, r, z; h W_hhᵀ added to r, z, hn
     for (int row = 0; row < rows; ++row) {
-      std::copy(bias_.begin(), bias_.end(), gates + static_cast<std::ptrdiff_t>(row) * 4 * width);
+      std::fill_n(gates + (static_cast<std::ptrdiff_t>(row) * 4 + 3) * width, width, T{0});
     }
-    // (A h) P_l into n, r, z; h W_hhᵀ into r, z, hn
     gemm(Op::kNone, Op::kNone, rows, 3 * width, live, message, width,
-         folded_.data() + static_cast<std::ptrdiff_t>(step) * 3 * width * width, 3 * width, T{1}, gates, 4 * width);
+         folded_.data() + static_cast<std::ptrdiff_t>(step) * 3 * width * width, 3 * width, T{0}, gates, 4 * width);
     gemm(Op::kNone, Op::kTranspose, rows, 3 * width, live, h, width, weights_.w_hh, width, T{1}, gates + width,
          4 * width);
     T* const next = step + 1 == shape_.steps ? out + first : state_.data() + (step + 1) * stride + first;
-    gru_forward(rows, width, gates, h, next);
+    gru_forward(rows, width, bias_.data(), gates, h, next);
   }
   if (shape_.elu) elu(out + first, static_cast<std::size_t>(rows) * width);
 }

@@ -55,22 +55,24 @@ GRAPHDRL_INLINE T hyperbolic_tangent(T x) {
 }
 
 template <typename T>
-GRAPHDRL_INLINE void gru_forward_rows(int rows, int width, T* gates, const T* h, T* h_next) {
+GRAPHDRL_INLINE void gru_forward_rows(int rows, int width, const T* bias, T* gates, const T* h, T* h_next) {
   for (int row = 0; row < rows; ++row) {
     T* const n = gates + static_cast<std::ptrdiff_t>(row) * 4 * width;
     T* const r = n + width;
     T* const z = r + width;
-    const T* const hn = z + width;
+    T* const hn = z + width;
     const T* const state = h + static_cast<std::ptrdiff_t>(row) * width;
     T* const next = h_next + static_cast<std::ptrdiff_t>(row) * width;
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
-      const T reset = sigmoid(r[i]);
-      const T update = sigmoid(z[i]);
-      const T candidate = hyperbolic_tangent(n[i] + reset * hn[i]);
+      const T reset = sigmoid(r[i] + bias[width + i]);
+      const T update = sigmoid(z[i] + bias[2 * width + i]);
+      const T share = hn[i] + bias[3 * width + i];
+      const T candidate = hyperbolic_tangent(n[i] + bias[i] + reset * share);
       n[i] = candidate;
       r[i] = reset;
       z[i] = update;
+      hn[i] = share;
       next[i] = (T{1} - update) * candidate + update * state[i];
     }
   }
@@ -115,12 +117,32 @@ GRAPHDRL_INLINE void elu_backward_values(const T* y, T* grad, std::size_t count)
 }  // namespace
 
 GRAPHDRL_VECTOR_CLONES
-void gru_forward(int rows, int width, float* gates, const float* h, float* h_next) {
-  gru_forward_rows(rows, width, gates, h, h_next);
+void adam_update(const AdamStep& step, const float* grad, float* first, float* second, float* value,
+                 std::size_t count) {
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) {
+    float g = grad[i];
+    g = g < -step.clamp ? -step.clamp : g;
+    g = g > step.clamp ? step.clamp : g;
+    first[i] = step.beta1 * first[i] + (1.0f - step.beta1) * g;
+    second[i] = step.beta2 * second[i] + (1.0f - step.beta2) * g * g;
+    value[i] -= step.rate * first[i] / (__builtin_sqrtf(second[i]) * step.second_scale + step.epsilon);
+  }
 }
 
-void gru_forward(int rows, int width, double* gates, const double* h, double* h_next) {
-  gru_forward_rows(rows, width, gates, h, h_next);
+GRAPHDRL_VECTOR_CLONES
+void move_towards(const float* goal, float share, float* value, std::size_t count) {
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) value[i] += share * (goal[i] - value[i]);
+}
+
+GRAPHDRL_VECTOR_CLONES
+void gru_forward(int rows, int width, const float* bias, float* gates, const float* h, float* h_next) {
+  gru_forward_rows(rows, width, bias, gates, h, h_next);
+}
+
+void gru_forward(int rows, int width, const double* bias, double* gates, const double* h, double* h_next) {
+  gru_forward_rows(rows, width, bias, gates, h, h_next);
 }
 
 GRAPHDRL_VECTOR_CLONES

@@ -6,14 +6,14 @@
 namespace graphdrl {
 
 // The four gate inputs of a GRU cell stand side by side in one row, [n | r | z | hn], D values each, so that the
-// product with the message fills the first three and the product with the state adds to the last three. After
-// gru_forward they hold n, r, z and the state's share of n; after gru_backward the loss's derivative by the four
-// inputs.
+// product with the message fills the first three and the product with the state adds to the last three. gru_forward
+// adds the biases, in the same order; after it they hold n, r, z and the state's share of n; after gru_backward the
+// loss's derivative by the four inputs.
 
 // h' = (1 - z) n + z h,  r = σ(r),  z = σ(z),  n = tanh(n + r · hn)  [Cho et al. 2014, as PyTorch's GRUCell]
-// gates: [rows, 4D] in and out; h: [rows, D]; h_next: [rows, D], may be h itself.
-void gru_forward(int rows, int width, float* gates, const float* h, float* h_next);
-void gru_forward(int rows, int width, double* gates, const double* h, double* h_next);
+// gates: [rows, 4D] in and out; bias: [4D]; h: [rows, D]; h_next: [rows, D], may be h itself.
+void gru_forward(int rows, int width, const float* bias, float* gates, const float* h, float* h_next);
+void gru_forward(int rows, int width, const double* bias, double* gates, const double* h, double* h_next);
 
 // gates: [rows, 4D], from gru_forward in, derivatives out; h: [rows, D], the state before the step;
 // grad: [rows, D], by h' in, by h through the z gate alone out.
@@ -27,5 +27,22 @@ void elu(double* x, std::size_t count);
 // grad, by elu(x) in, by x out; y: elu(x)
 void elu_backward(const float* y, float* grad, std::size_t count);
 void elu_backward(const double* y, double* grad, std::size_t count);
+
+// What Adam's formula needs beside the arrays. The two bias corrections of step t are folded into rate and
+// second_scale.
+struct AdamStep {
+  float clamp;  // gradients are cut to [-clamp, clamp] first
+  float beta1;
+  float beta2;
+  float rate;          // learning rate / (1 - beta1^t)
+  float second_scale;  // 1 / √(1 - beta2^t)
+  float epsilon;
+};
+
+// m = β1 m + (1 - β1) g,  v = β2 v + (1 - β2) g²,  θ -= rate · m / (√v · second_scale + ε)  [Kingma and Ba 2015]
+void adam_update(const AdamStep& step, const float* grad, float* first, float* second, float* value, std::size_t count);
+
+// value += share · (goal - value)
+void move_towards(const float* goal, float share, float* value, std::size_t count);
 
 }  // namespace graphdrl

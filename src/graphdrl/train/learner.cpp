@@ -11,8 +11,6 @@
 namespace graphdrl {
 namespace {
 
-constexpr double kGradientClamp = 1.0;  // element by element, as in the author's code
-
 // A tensor on the memory of a vector, for reading.
 template <typename T>
 torch::Tensor as_tensor(const std::vector<T>& values, std::vector<std::int64_t> shape) {
@@ -22,15 +20,12 @@ torch::Tensor as_tensor(const std::vector<T>& values, std::vector<std::int64_t> 
 }  // namespace
 
 Learner::Learner(const LearnerOptions& options, Rng& rng)
-    : options_(options), online_(PaperParameters(rng)), target_(online_.parameters()) {
+    : options_(options),
+      online_(PaperParameters(rng)),
+      target_(online_.parameters()),
+      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {
   at::set_num_threads(1);  // LibTorch's own operators: their sums would depend on the number of threads
-  adam_ = std::make_unique<torch::optim::Adam>(std::vector<torch::Tensor>{online_.trainable()},
-                                               torch::optim::AdamOptions(options.learning_rate));
-  adam_->step();  // the gradient is 0, so that this changes nothing but makes Adam's state, which restore() fills
-  adam_state().step(0);
 }
-
-Learner::~Learner() = default;
 
 double Learner::compute_gradients(const Minibatch& batch, const torch::Tensor& keep_scale) {
   const std::int64_t graphs = batch.graphs.graph_count();
@@ -60,34 +55,27 @@ double Learner::compute_gradients(const Minibatch& batch, const torch::Tensor& k
 double Learner::learn(const Minibatch& batch, Rng& rng) {
   const double loss =
       compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng));
-  online_.trainable().mutable_grad().clamp_(-kGradientClamp, kGradientClamp);
-  adam_->step();
-  const torch::NoGradGuard no_grad;
-  target_.values().lerp_(online_.values(), options_.soft_update);  // θ' ← β θ + (1 - β) θ' [paper, eq. 6]
+  const torch::Tensor& grad = online_.trainable().grad();
+  const std::span<float> values = online_.parameters().values();
+  adam_.step({grad.data_ptr<float>(), static_cast<std::size_t>(grad.numel())},
+             values.first(PaperParameters::trainable_count()));
+  soft_update(values, options_.soft_update, target_.parameters().values());
   online_.update();
   target_.update();
   return loss;
 }
 
-torch::optim::AdamParamState& Learner::adam_state() {
-  return static_cast<torch::optim::AdamParamState&>(*adam_->state().begin()->second);
-}
-
 void Learner::save(Packed& packed, std::vector<TensorView>& tensors) {
   for (const TensorView& view : online_.parameters().views("online.")) tensors.push_back(view);
   for (const TensorView& view : target_.parameters().views("target.")) tensors.push_back(view);
-  const auto add = [&](const char* name, const torch::Tensor& values) {
-    tensors.emplace_back(name, Shape{values.numel()},
-                         std::span<const float>(values.data_ptr<float>(), static_cast<std::size_t>(values.numel())));
-  };
-  add("adam.exp_avg", adam_state().exp_avg());
-  add("adam.exp_avg_sq", adam_state().exp_avg_sq());
-  packed.adam_step = {adam_state().step()};
+  const auto count = static_cast<std::int64_t>(PaperParameters::trainable_count());
+  tensors.emplace_back("adam.exp_avg", Shape{count}, std::span<const float>(adam_.first()));
+  tensors.emplace_back("adam.exp_avg_sq", Shape{count}, std::span<const float>(adam_.second()));
+  packed.adam_step = {adam_.steps()};
   tensors.emplace_back("adam.step", Shape{1}, std::span<const std::int64_t>(packed.adam_step));
 }
 
 void Learner::restore(const Safetensors& file) {
-  const torch::NoGradGuard no_grad;
   const PaperParameters online = PaperParameters::from_file(file, "online.");
   const PaperParameters target = PaperParameters::from_file(file, "target.");
   const auto count = static_cast<std::int64_t>(PaperParameters::trainable_count());
@@ -98,9 +86,9 @@ void Learner::restore(const Safetensors& file) {
   if (step < 0 || !moments_are_real) throw Error({.what = "Adam's state is damaged", .where = file.source()});
   std::copy(online.values().begin(), online.values().end(), online_.parameters().values().begin());
   std::copy(target.values().begin(), target.values().end(), target_.parameters().values().begin());
-  std::copy(first.begin(), first.end(), adam_state().exp_avg().data_ptr<float>());
-  std::copy(second.begin(), second.end(), adam_state().exp_avg_sq().data_ptr<float>());
-  adam_state().step(step);
+  adam_.first() = first;
+  adam_.second() = second;
+  adam_.steps() = step;
   online_.update();
   target_.update();
 }

@@ -2,16 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "graphdrl/train/adam.h"
 #include "graphdrl/train/minibatch.h"
 #include "graphdrl/train/q_network.h"
-
-namespace torch::optim {
-class Adam;
-struct AdamParamState;
-}  // namespace torch::optim
 
 namespace graphdrl {
 
@@ -28,7 +23,6 @@ class Learner {
  public:
   // Initialises the online network from rng and copies it to the target.
   Learner(const LearnerOptions& options, Rng& rng);
-  ~Learner();
 
   // One step; gives the loss before it. `rng` draws the dropout.
   double learn(const Minibatch& batch, Rng& rng);
@@ -48,12 +42,10 @@ class Learner {
   void restore(const Safetensors& file);
 
  private:
-  torch::optim::AdamParamState& adam_state();
-
   LearnerOptions options_;
   QNetwork online_;
   QNetwork target_;
-  std::unique_ptr<torch::optim::Adam> adam_;
+  Adam adam_;
   std::vector<float> next_q_;       // [B, A]
   std::vector<float> next_online_;  // [B, A]
 };

@@ -54,8 +54,8 @@ ReplayBuffer random_replay(const World& world, Rng& rng) {
   return replay;
 }
 
-// Runs products of given shapes, each independent of the others. Operands start all over 2 MB, small enough for the caches
-// to hold them: what is left is the products alone.
+// Runs products of given shapes, each independent of the others. Operands start all over 2 MB, small enough for the
+// caches to hold them: what is left is the products alone.
 class GemmReplay {
  public:
   GemmReplay(std::vector<GemmCall> calls, int threads)

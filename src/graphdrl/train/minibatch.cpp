@@ -11,28 +11,31 @@ void Minibatch::clear() {
   terminal.clear();
 }
 
+void append_transition(const ReplayBuffer& replay, std::size_t index, const FeatureEncoder& encoder, Minibatch& batch) {
+  const Transition& t = replay.transition(index);
+  const Graph& graph = encoder.world().graph();
+  const std::size_t row = batch.x.size();
+  const std::size_t values = static_cast<std::size_t>(graph.node_count()) * kFeatureCount;
+  batch.graphs.add(graph);
+  batch.x.resize(row + values);
+  batch.next_x.resize(row + values);
+  const auto visits = replay.visits(index).first(graph.node_count());
+  encoder.encode(t.position, visits, std::span(batch.x).subspan(row));
+  batch.next_visits.assign(visits.begin(), visits.end());
+  ++batch.next_visits[t.next_position];
+  encoder.encode(t.next_position, std::span<const std::uint16_t>(batch.next_visits),
+                 std::span(batch.next_x).subspan(row));
+  batch.actions.push_back(t.action);
+  batch.rewards.push_back(t.reward);
+  batch.terminal.push_back(t.terminal);
+}
+
 void sample_minibatch(const ReplayBuffer& replay, std::span<const FeatureEncoder> encoders, std::int64_t size, Rng& rng,
                       Minibatch& batch) {
   batch.clear();
-  std::vector<std::uint16_t> next_visits;
   for (std::int64_t i = 0; i < size; ++i) {
     const std::size_t index = rng.below(static_cast<std::uint32_t>(replay.size()));
-    const Transition& t = replay.transition(index);
-    const FeatureEncoder& encoder = encoders[t.world];
-    const Graph& graph = encoder.world().graph();
-    const std::size_t row = batch.x.size();
-    const std::size_t values = static_cast<std::size_t>(graph.node_count()) * kFeatureCount;
-    batch.graphs.add(graph);
-    batch.x.resize(row + values);
-    batch.next_x.resize(row + values);
-    const auto visits = replay.visits(index).first(graph.node_count());
-    encoder.encode(t.position, visits, std::span(batch.x).subspan(row));
-    next_visits.assign(visits.begin(), visits.end());
-    ++next_visits[t.next_position];
-    encoder.encode(t.next_position, std::span<const std::uint16_t>(next_visits), std::span(batch.next_x).subspan(row));
-    batch.actions.push_back(t.action);
-    batch.rewards.push_back(t.reward);
-    batch.terminal.push_back(t.terminal);
+    append_transition(replay, index, encoders[replay.transition(index).world], batch);
   }
 }
 

@@ -22,8 +22,13 @@ struct Minibatch {
   std::vector<float> rewards;          // [B]
   std::vector<std::uint8_t> terminal;  // [B], 0 or 1
 
+  std::vector<std::uint16_t> next_visits;  // room to build s'
+
   void clear();
 };
+
+// Adds one transition, encoded; `encoder` is that of its world.
+void append_transition(const ReplayBuffer& replay, std::size_t index, const FeatureEncoder& encoder, Minibatch& batch);
 
 // Draws `size` transitions uniformly, with replacement, and builds their features. `encoders` are those of the worlds
 // that the transitions name. The batch's memory is used again.

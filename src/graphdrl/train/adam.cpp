@@ -1,0 +1,45 @@
+#include "graphdrl/train/adam.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/nn/vector_math.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::size_t kBlock = 16'384;  // values
+
+// Calls visit(begin, size) for every block of `count` values.
+template <typename Visit>
+void for_each_block(std::size_t count, const Visit& visit) {
+  parallel_for(static_cast<int>((count + kBlock - 1) / kBlock), [&](int block) {
+    const std::size_t begin = static_cast<std::size_t>(block) * kBlock;
+    visit(begin, std::min(kBlock, count - begin));
+  });
+}
+
+}  // namespace
+
+void Adam::step(std::span<const float> grad, std::span<float> values) {
+  ++steps_;
+  const auto t = static_cast<double>(steps_);
+  const AdamStep step{.clamp = static_cast<float>(options_.clamp),
+                      .beta1 = static_cast<float>(options_.beta1),
+                      .beta2 = static_cast<float>(options_.beta2),
+                      .rate = static_cast<float>(options_.learning_rate / (1 - std::pow(options_.beta1, t))),
+                      .second_scale = static_cast<float>(1 / std::sqrt(1 - std::pow(options_.beta2, t))),
+                      .epsilon = static_cast<float>(options_.epsilon)};
+  for_each_block(values.size(), [&](std::size_t begin, std::size_t size) {
+    adam_update(step, grad.data() + begin, first_.data() + begin, second_.data() + begin, values.data() + begin, size);
+  });
+}
+
+void soft_update(std::span<const float> online, double share, std::span<float> target) {
+  for_each_block(target.size(), [&](std::size_t begin, std::size_t size) {
+    move_towards(online.data() + begin, static_cast<float>(share), target.data() + begin, size);
+  });
+}
+
+}  // namespace graphdrl
