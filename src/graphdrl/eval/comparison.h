@@ -59,7 +59,7 @@ struct Comparison {
 // Grids are walked in directions, other worlds by neighbours. Throws Error on a bad policy or option.
 Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options);
 
-// The comparison as a text table, at most 80 columns wide unless names are long.
+// The comparison as a text: a table per policy, and a line per policy over all maps.
 std::string format_comparison(const Comparison& comparison);
 
 }  // namespace graphdrl
