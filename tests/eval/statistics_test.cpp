@@ -19,6 +19,12 @@ TEST(Summarise, IsWorkedOutByHand) {
   EXPECT_NEAR(summary.ci95->high, 4 + half_width, 1e-6);
 }
 
+TEST(Median, IsTheMiddleOne) {
+  EXPECT_EQ(median({3, 1, 2}), 2);
+  EXPECT_EQ(median({4, 1, 3, 2}), 3);
+  EXPECT_EQ(median({5}), 5);
+}
+
 TEST(Summarise, HasNoSpreadForOneValue) {
   const Summary summary = summarise(std::vector<double>{5});
   EXPECT_EQ(summary.mean, 5);

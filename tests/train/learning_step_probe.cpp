@@ -78,7 +78,7 @@ int write_probe(const std::string& out, bool double_dqn) {
   const torch::Tensor keep_scale = draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, 0.5, rng);
   const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
   PaperParameters grad;
-  const torch::Tensor& flat = learner.online().trainable().grad();
+  const torch::Tensor& flat = learner.online().gradients();
   std::copy_n(flat.data_ptr<float>(), flat.numel(), grad.values().begin());
 
   const auto n = static_cast<std::int64_t>(batch.graphs.node_count());

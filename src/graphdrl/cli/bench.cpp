@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/eval/bench.h"
+#include "graphdrl/eval/statistics.h"
 
 namespace graphdrl {
 namespace {
@@ -36,11 +36,6 @@ std::optional<LearningStep> time_learning_step(int threads) {
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) return std::nullopt;
   return LearningStep{.step_ms = json["learning_step_ms"], .gemm_ms = json["gemm_ms"]};
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
-  return values[values.size() / 2];
 }
 
 Json run_bench() {

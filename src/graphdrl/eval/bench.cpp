@@ -1,6 +1,5 @@
 #include "graphdrl/eval/bench.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/vector_env.h"
 #include "graphdrl/eval/rollout.h"
+#include "graphdrl/eval/statistics.h"
 #include "graphdrl/nn/features.h"
 #include "graphdrl/planners/network_policy.h"
 #include "graphdrl/planners/registry.h"
@@ -118,8 +118,7 @@ double bench_move_ms() {
     times_ms.push_back(1e3 * seconds_since(start));
     episode.step(static_cast<int>(rng.below(kActionCount)));
   }
-  std::nth_element(times_ms.begin(), times_ms.begin() + kMoves / 2, times_ms.end());
-  return times_ms[kMoves / 2];
+  return median(times_ms);
 }
 
 }  // namespace graphdrl

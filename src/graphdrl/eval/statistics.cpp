@@ -25,4 +25,9 @@ Summary summarise(std::span<const double> values) {
   return summary;
 }
 
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
+  return values[values.size() / 2];
+}
+
 }  // namespace graphdrl

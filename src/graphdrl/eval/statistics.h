@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace graphdrl {
 
@@ -22,5 +23,8 @@ struct Summary {
 
 // REQUIRES: values is not empty.
 Summary summarise(std::span<const double> values);
+
+// The upper one of the two in the middle where their number is even. REQUIRES: values is not empty.
+double median(std::vector<double> values);
 
 }  // namespace graphdrl

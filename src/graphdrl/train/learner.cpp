@@ -44,7 +44,7 @@ double Learner::compute_gradients(const Minibatch& batch, const torch::Tensor& k
   }
   const torch::Tensor target = td_targets(td, options_.discount);
 
-  online_.trainable().mutable_grad().zero_();
+  online_.gradients().zero_();
   const torch::Tensor q = online_.forward_train(batch.graphs, as_tensor(batch.x, {nodes, kFeatureCount}), keep_scale);
   const torch::Tensor chosen = q.gather(1, as_tensor(batch.actions, {graphs, 1})).squeeze(1);
   const torch::Tensor loss = torch::mse_loss(chosen, target);  // L(θ) [paper, eq. 5]
@@ -55,7 +55,7 @@ double Learner::compute_gradients(const Minibatch& batch, const torch::Tensor& k
 double Learner::learn(const Minibatch& batch, Rng& rng) {
   const double loss =
       compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng));
-  const torch::Tensor& grad = online_.trainable().grad();
+  const torch::Tensor& grad = online_.gradients();
   const std::span<float> values = online_.parameters().values();
   adam_.step({grad.data_ptr<float>(), static_cast<std::size_t>(grad.numel())},
              values.first(PaperParameters::trainable_count()));

@@ -27,7 +27,7 @@ class Learner {
   // One step; gives the loss before it. `rng` draws the dropout.
   double learn(const Minibatch& batch, Rng& rng);
 
-  // The loss [paper, eq. 5]; its gradients stay in online().trainable().grad(), not clamped yet.
+  // The loss [paper, eq. 5]; its gradients stay in online().gradients(), not clamped yet.
   // keep_scale: [B, 256], see QNetwork::forward_train.
   double compute_gradients(const Minibatch& batch, const torch::Tensor& keep_scale);
 

@@ -1,12 +1,12 @@
 #include "graphdrl/train/learning_step_bench.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <vector>
 
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/eval/statistics.h"
 #include "graphdrl/nn/gemm.h"
 #include "graphdrl/train/learner.h"
 #include "graphdrl/train/minibatch.h"
@@ -25,11 +25,6 @@ double time_ms(const Work& work) {
   for (int i = 0; i < kRepeats; ++i) work();
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
   return elapsed.count() / kRepeats;
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
-  return values[values.size() / 2];
 }
 
 ReplayBuffer random_replay(const World& world, Rng& rng) {

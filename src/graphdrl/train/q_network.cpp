@@ -8,14 +8,12 @@ namespace graphdrl {
 QNetwork::QNetwork(PaperParameters parameters) : parameters_(std::move(parameters)) {
   const std::span<float> memory = parameters_.values();
   values_ = torch::from_blob(memory.data(), {static_cast<std::int64_t>(memory.size())});
-  const auto count = static_cast<std::int64_t>(PaperParameters::trainable_count());
-  trainable_ = torch::from_blob(memory.data(), {count}).set_requires_grad(true);
-  trainable_.mutable_grad() = torch::zeros({count});
+  gradients_ = torch::zeros({static_cast<std::int64_t>(PaperParameters::trainable_count())});
   for (const TensorSpec& spec : PaperParameters::specs()) {
     torch::Tensor leaf = view(values_, spec);
     if (spec.trainable) {
       leaf.set_requires_grad(true);
-      leaf.mutable_grad() = view(trainable_.grad(), spec);  // backward() adds to the flat gradient
+      leaf.mutable_grad() = view(gradients_, spec);  // backward() adds to the flat gradient
     }
     leaves_[spec.name] = leaf;
   }

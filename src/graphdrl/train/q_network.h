@@ -12,9 +12,8 @@
 
 namespace graphdrl {
 
-// Parameters in one flat buffer, seen from three sides: as leaf tensors that autograd differentiates, as one flat
-// tensor that the optimiser updates, and as a PaperNetwork that chooses moves. All share memory; update() must follow
-// every change of it.
+// Parameters in one flat buffer, seen from three sides: by autograd as leaf tensors, whose gradients add up in one flat
+// buffer too; by the optimiser as spans; by inference as a PaperNetwork. update() must follow every change of them.
 class QNetwork {
  public:
   explicit QNetwork(PaperParameters parameters);
@@ -35,7 +34,7 @@ class QNetwork {
   PaperParameters& parameters() { return parameters_; }
   const PaperParameters& parameters() const { return parameters_; }
   torch::Tensor& values() { return values_; }        // [all], parameters and running statistics
-  torch::Tensor& trainable() { return trainable_; }  // [240678], a leaf; its grad() is every tensor's gradient
+  torch::Tensor& gradients() { return gradients_; }  // [240678], of the trainable ones, in the buffer's order
 
  private:
   torch::Tensor view(const torch::Tensor& flat, const TensorSpec& spec) const;
@@ -44,7 +43,7 @@ class QNetwork {
   PaperParameters parameters_;
   PaperNetwork inference_;
   torch::Tensor values_;
-  torch::Tensor trainable_;
+  torch::Tensor gradients_;
   std::map<std::string, torch::Tensor> leaves_;  // by PyTorch's names
 };
 
