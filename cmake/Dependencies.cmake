@@ -6,7 +6,7 @@ find_package(CLI11 REQUIRED)
 find_package(Protobuf REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 
-# OpenBLAS's OpenMP build and no other: with the pthread build its thread pool fights OpenMP's. Debian keeps each build
+# LibTorch's BLAS: OpenBLAS's OpenMP build and no other; with the pthread build its thread pool fights OpenMP's. Debian keeps each build
 # in a folder of its own. The programs look there first (DT_RPATH, which, unlike DT_RUNPATH, also holds for the
 # libblas.so.3 that LibTorch asks for), whatever the system's alternatives say.
 find_path(OPENBLAS_INCLUDE_DIR cblas.h

@@ -139,7 +139,7 @@ int main_program(int argc, char** argv) {
   app.callback([command, new_run, resume, &bench] {
     if (bench) {
       const LearningStepTime time = time_learning_step(threads());
-      print_json({{"learning_step_ms", time.step_ms}, {"gemm_ms", time.gemm_ms}});
+      print_json({{"learning_step_ms", time.step_ms}, {"products_ms", time.products_ms}, {"sgemm_ms", time.sgemm_ms}});
       return;
     }
     for (const CLI::Option* const option : new_run) {

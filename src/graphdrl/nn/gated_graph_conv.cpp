@@ -14,6 +14,9 @@ namespace {
 // enough for a chunk's gates to stay in a core's second-level cache.
 constexpr int kChunkNodes = 96;
 
+// Rows of gates that a gradient's product packs at a time; they stay in the second-level cache.
+constexpr int kBlockNodes = 200;
+
 // Block order of PyTorch's GRU weights (r, z, n), by position in the order used here (n, r, z).
 constexpr int kTorchBlock[3] = {2, 0, 1};
 
@@ -22,16 +25,17 @@ void grow(std::vector<T>& buffer, std::size_t size) {
   if (buffer.size() < size) buffer.resize(size);
 }
 
-// out[i] += Σ_{j in N(i)} in[j] within one chunk. in, out: [nodes, columns] with rows `width` apart, starting at the
-// chunk's first node.
+// out[i] = Σ_{j in N(i)} in[j], or out[i] += …, within one chunk. in, out: [nodes, columns] with rows `width` apart,
+// starting at the chunk's first node.
 template <typename T>
-void add_neighbours(const GraphBatch& batch, int first_graph, int graph_count, int columns, int width, const T* in,
-                    T* out) {
+void sum_neighbours(const GraphBatch& batch, int first_graph, int graph_count, int columns, int width, const T* in,
+                    bool accumulate, T* out) {
   for (int g = first_graph; g < first_graph + graph_count; ++g) {
     const Graph& graph = batch.graph(g);
     const std::ptrdiff_t base = batch.first_node(g) - batch.first_node(first_graph);
     for (NodeId node = 0; node < graph.node_count(); ++node) {
       T* const row = out + (base + node) * width;
+      if (!accumulate) std::fill_n(row, columns, T{0});
       for (const NodeId next : graph.neighbours(node)) {
         const T* const from = in + (base + next) * width;
 #pragma omp simd
@@ -44,24 +48,25 @@ void add_neighbours(const GraphBatch& batch, int first_graph, int graph_count, i
 }  // namespace
 
 template <typename T>
-GatedGraphConv<T>::GatedGraphConv(GatedGraphConvShape shape) : shape_(shape) {
-  const std::size_t square = static_cast<std::size_t>(shape.width) * shape.width;
-  folded_.resize(shape.steps * 3 * square);
-  bias_.resize(4 * static_cast<std::size_t>(shape.width));
-}
+GatedGraphConv<T>::GatedGraphConv(GatedGraphConvShape shape)
+    : shape_(shape), folded_(shape.steps), bias_(4 * static_cast<std::size_t>(shape.width)) {}
 
 template <typename T>
 void GatedGraphConv<T>::set_weights(const GatedGraphConvTensors<const T>& weights) {
   weights_ = weights;
   const int width = shape_.width;
   const std::ptrdiff_t square = static_cast<std::ptrdiff_t>(width) * width;
-  parallel_for(shape_.steps * 3, [&](int task) {  // P_l = Θ_l W_ihᵀ, a gate at a time
-    const int step = task / 3;
-    const int block = task % 3;
-    gemm(Op::kNone, Op::kTranspose, width, width, width, weights.weight + step * square, width,
-         weights.w_ih + kTorchBlock[block] * square, width, T{0}, folded_.data() + step * 3 * square + block * width,
-         3 * width);
+  w_ih_.reset(width, 3 * width);
+  parallel_for(4, [&](int task) {
+    if (task < 3) {
+      w_ih_.set_columns(task * width, width, Op::kTranspose, weights.w_ih + kTorchBlock[task] * square, width);
+    } else {
+      w_hh_reset_update_.set(width, 2 * width, Op::kTranspose, weights.w_hh, width);
+      w_hh_new_.set(width, width, Op::kTranspose, weights.w_hh + 2 * square, width);
+    }
   });
+  parallel_for(shape_.steps,
+               [&](int step) { gemm(width, weights.weight + step * square, width, w_ih_, folded_[step]); });
   for (int i = 0; i < width; ++i) {
     bias_[i] = weights.b_ih[2 * width + i];                                    // n
     bias_[width + i] = weights.b_ih[i] + weights.b_hh[i];                      // r
@@ -114,16 +119,11 @@ void GatedGraphConv<T>::forward_chunk(const GraphBatch& batch, const Chunk& chun
     const T* const h = state_.data() + step * stride + first;
     T* const message = message_.data() + step * stride + first;
     T* const gates = gates_.data() + 4 * (step * stride + first);
-    std::fill_n(message, static_cast<std::ptrdiff_t>(rows) * width, T{0});
-    add_neighbours(batch, chunk.first_graph, chunk.graph_count, live, width, h, message);
-    // (A h) P_l into n, r, z; h W_hhᵀ added to r, z, hn
-    for (int row = 0; row < rows; ++row) {
-      std::fill_n(gates + (static_cast<std::ptrdiff_t>(row) * 4 + 3) * width, width, T{0});
-    }
-    gemm(Op::kNone, Op::kNone, rows, 3 * width, live, message, width,
-         folded_.data() + static_cast<std::ptrdiff_t>(step) * 3 * width * width, 3 * width, T{0}, gates, 4 * width);
-    gemm(Op::kNone, Op::kTranspose, rows, 3 * width, live, h, width, weights_.w_hh, width, T{1}, gates + width,
-         4 * width);
+    sum_neighbours(batch, chunk.first_graph, chunk.graph_count, live, width, h, false, message);
+    // (A h) P_l into n, r, z; h W_hhᵀ added to r, z and put into hn
+    gemm(Op::kNone, rows, 3 * width, live, message, width, folded_[step], false, gates, 4 * width);
+    gemm(Op::kNone, rows, 2 * width, live, h, width, w_hh_reset_update_, true, gates + width, 4 * width);
+    gemm(Op::kNone, rows, width, live, h, width, w_hh_new_, false, gates + 3 * width, 4 * width);
     T* const next = step + 1 == shape_.steps ? out + first : state_.data() + (step + 1) * stride + first;
     gru_forward(rows, width, bias_.data(), gates, h, next);
   }
@@ -137,13 +137,22 @@ void GatedGraphConv<T>::backward(const GraphBatch& batch, const T* out, const T*
   const std::size_t values = static_cast<std::size_t>(nodes) * shape_.width;
   grow(grad_, values);
   grow(scratch_, values);
-  folded_grad_.resize(folded_.size());
+  const std::ptrdiff_t square = static_cast<std::ptrdiff_t>(shape_.width) * shape_.width;
+  folded_grad_.resize(shape_.steps * 3 * square);
+  w_hh_grad_.resize(shape_.steps * 3 * square);
   bias_grad_.resize(shape_.steps * bias_.size());
+  folded_transposed_.resize(shape_.steps);
+  parallel_for(shape_.steps + 1, [&](int task) {
+    if (task < shape_.steps) {
+      folded_transposed_[task].set_transposed(folded_[task]);
+    } else {
+      w_hh_.set(3 * shape_.width, shape_.width, Op::kNone, weights_.w_hh, shape_.width);
+    }
+  });
   parallel_for(static_cast<int>(chunks_.size()),
                [&](int index) { backward_chunk(batch, chunks_[index], out, grad_out, grad_x); });
-  weight_products(nodes, grad);
+  parallel_for(4 * shape_.steps, [&](int task) { weight_products(task / 4, task % 4, nodes); });
   unfold(grad);
-  sum_biases(nodes, grad);
 }
 
 template <typename T>
@@ -163,11 +172,9 @@ void GatedGraphConv<T>::backward_chunk(const GraphBatch& batch, const Chunk& chu
     gru_backward(rows, width, gates, state_.data() + step * stride + first, grad);
     if (step == 0 && grad_x == nullptr) return;
     // by h: through the gates' own share, dgates W_hh, and through the message, Aᵀ (dgates P_lᵀ), where Aᵀ = A
-    gemm(Op::kNone, Op::kTranspose, rows, live, 3 * width, gates, 4 * width,
-         folded_.data() + static_cast<std::ptrdiff_t>(step) * 3 * width * width, 3 * width, T{0}, by_message, width);
-    gemm(Op::kNone, Op::kNone, rows, live, 3 * width, gates + width, 4 * width, weights_.w_hh, width, T{1}, grad,
-         width);
-    add_neighbours(batch, chunk.first_graph, chunk.graph_count, live, width, by_message, grad);
+    gemm(Op::kNone, rows, live, 3 * width, gates, 4 * width, folded_transposed_[step], false, by_message, width);
+    gemm(Op::kNone, rows, live, 3 * width, gates + width, 4 * width, w_hh_, true, grad, width);
+    sum_neighbours(batch, chunk.first_graph, chunk.graph_count, live, width, by_message, true, grad);
   }
   for (int row = 0; row < rows; ++row) {
     const T* const from = grad + static_cast<std::ptrdiff_t>(row) * width;
@@ -177,71 +184,77 @@ void GatedGraphConv<T>::backward_chunk(const GraphBatch& batch, const Chunk& chu
 }
 
 template <typename T>
-void GatedGraphConv<T>::weight_products(int nodes, const GatedGraphConvTensors<T>& grad) {
+void GatedGraphConv<T>::weight_products(int step, int gate, int nodes) {
   const int width = shape_.width;
-  const std::ptrdiff_t square = static_cast<std::ptrdiff_t>(width) * width;
+  const int live = live_columns(step);
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(nodes) * width;
-  // A task is one gate's block: three of W_hh first, which sum over the steps, then three of every P_l.
-  parallel_for(3 + 3 * shape_.steps, [&](int task) {
-    const int block = task % 3;
-    if (task < 3) {  // by W_hh: Σ_l dgatesᵀ h_l
-      T* const out = grad.w_hh + block * square;
-      std::fill_n(out, square, T{0});
-      for (int step = shape_.steps - 1; step >= 0; --step) {
-        gemm(Op::kTranspose, Op::kNone, width, live_columns(step), nodes,
-             gates_.data() + 4 * step * stride + (1 + block) * width, 4 * width, state_.data() + step * stride, width,
-             T{1}, out, width);
-      }
-    } else {  // by P_l: (A h_l)ᵀ dgates, with rows of zeros where the state is still padding
-      const int step = task / 3 - 1;
-      const int live = live_columns(step);
-      T* const out = folded_grad_.data() + step * 3 * square + block * width;
-      gemm(Op::kTranspose, Op::kNone, live, width, nodes, message_.data() + step * stride, width,
-           gates_.data() + 4 * step * stride + block * width, 4 * width, T{0}, out, 3 * width);
-      for (int row = live; row < width; ++row) {
-        std::fill_n(out + static_cast<std::ptrdiff_t>(row) * 3 * width, width, T{0});
-      }
+  const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(step) * 3 * width * width;
+  T* const by_folded = folded_grad_.data() + place + gate * width;    // n, r, z
+  T* const by_w_hh = w_hh_grad_.data() + place + (gate - 1) * width;  // r, z, hn
+  T* const by_bias = bias_grad_.data() + (static_cast<std::ptrdiff_t>(step) * 4 + gate) * width;
+  const bool in_message = gate < 3;
+  const bool in_state = gate > 0;
+  for (int row = live; row < width; ++row) {  // the state is still padding there
+    if (in_message) std::fill_n(by_folded + static_cast<std::ptrdiff_t>(row) * 3 * width, width, T{0});
+    if (in_state) std::fill_n(by_w_hh + static_cast<std::ptrdiff_t>(row) * 3 * width, width, T{0});
+  }
+  std::fill_n(by_bias, width, T{0});
+  static thread_local PackedMatrix<T> dgates;
+  for (int first = 0; first < nodes; first += kBlockNodes) {
+    const int count = std::min(kBlockNodes, nodes - first);
+    const std::ptrdiff_t rows = step * stride + static_cast<std::ptrdiff_t>(first) * width;
+    const T* const block = gates_.data() + 4 * rows + gate * width;
+    dgates.set(count, width, Op::kNone, block, 4 * width);
+    if (in_message) {
+      gemm(Op::kTranspose, live, width, count, message_.data() + rows, width, dgates, first > 0, by_folded, 3 * width);
     }
-  });
+    if (in_state) {
+      gemm(Op::kTranspose, live, width, count, state_.data() + rows, width, dgates, first > 0, by_w_hh, 3 * width);
+    }
+    for (int node = 0; node < count; ++node) {
+      const T* const row = block + static_cast<std::ptrdiff_t>(node) * 4 * width;
+#pragma omp simd
+      for (int i = 0; i < width; ++i) by_bias[i] += row[i];
+    }
+  }
 }
 
 template <typename T>
 void GatedGraphConv<T>::unfold(const GatedGraphConvTensors<T>& grad) {
   const int width = shape_.width;
+  const int steps = shape_.steps;
   const std::ptrdiff_t square = static_cast<std::ptrdiff_t>(width) * width;
-  parallel_for(shape_.steps + 3, [&](int task) {
-    if (task < shape_.steps) {  // by Θ_l: Σ over gates of dP_l W_ih
+  parallel_for(steps + 6, [&](int task) {
+    if (task < steps) {  // by Θ_l: Σ over gates of dP_l W_ih
       for (int block = 0; block < 3; ++block) {
         gemm(Op::kNone, Op::kNone, width, width, width, folded_grad_.data() + task * 3 * square + block * width,
-             3 * width, weights_.w_ih + kTorchBlock[block] * square, width, block == 0 ? T{0} : T{1},
-             grad.weight + task * square, width);
+             3 * width, weights_.w_ih + kTorchBlock[block] * square, width, block > 0, grad.weight + task * square,
+             width);
       }
-    } else {  // by W_ih: Σ_l dP_lᵀ Θ_l
-      const int block = task - shape_.steps;
-      for (int step = 0; step < shape_.steps; ++step) {
+    } else if (task < steps + 3) {  // by W_ih: Σ_l dP_lᵀ Θ_l
+      const int block = task - steps;
+      for (int step = 0; step < steps; ++step) {
         gemm(Op::kTranspose, Op::kNone, width, width, width, folded_grad_.data() + step * 3 * square + block * width,
-             3 * width, weights_.weight + step * square, width, step == 0 ? T{0} : T{1},
-             grad.w_ih + kTorchBlock[block] * square, width);
+             3 * width, weights_.weight + step * square, width, step > 0, grad.w_ih + kTorchBlock[block] * square,
+             width);
+      }
+    } else {  // by W_hh: the sum over l, transposed
+      const int block = task - steps - 3;
+      T* const out = grad.w_hh + block * square;
+      for (int step = 0; step < steps; ++step) {
+        const T* const in = w_hh_grad_.data() + step * 3 * square + block * width;
+        for (int column = 0; column < width; ++column) {
+          T* const row = out + static_cast<std::ptrdiff_t>(column) * width;
+          for (int i = 0; i < width; ++i) {
+            const T value = in[static_cast<std::ptrdiff_t>(i) * 3 * width + column];
+            row[i] = step == 0 ? value : row[i] + value;
+          }
+        }
       }
     }
   });
-}
-
-template <typename T>
-void GatedGraphConv<T>::sum_biases(int nodes, const GatedGraphConvTensors<T>& grad) {
-  const int width = shape_.width;
-  const int columns = 4 * width;
-  parallel_for(shape_.steps, [&](int step) {
-    T* const sum = bias_grad_.data() + static_cast<std::ptrdiff_t>(step) * columns;
-    std::fill_n(sum, columns, T{0});
-    const T* row = gates_.data() + static_cast<std::ptrdiff_t>(step) * nodes * columns;
-    for (int node = 0; node < nodes; ++node, row += columns) {
-#pragma omp simd
-      for (int i = 0; i < columns; ++i) sum[i] += row[i];
-    }
-  });
-  for (int step = 1; step < shape_.steps; ++step) {
-    for (int i = 0; i < columns; ++i) bias_grad_[i] += bias_grad_[static_cast<std::size_t>(step) * columns + i];
+  for (int step = 1; step < steps; ++step) {
+    for (int i = 0; i < 4 * width; ++i) bias_grad_[i] += bias_grad_[static_cast<std::size_t>(step) * 4 * width + i];
   }
   const T* const n = bias_grad_.data();
   const T* const r_z = n + width;

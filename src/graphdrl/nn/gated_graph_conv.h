@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "graphdrl/nn/gemm.h"
 #include "graphdrl/nn/graph_batch.h"
 
 namespace graphdrl {
@@ -64,19 +65,24 @@ class GatedGraphConv {
   void cut_into_chunks(const GraphBatch& batch);
   void forward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* x, T* out, bool keep);
   void backward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* out, const T* grad_out, T* grad_x);
-  void weight_products(int nodes, const GatedGraphConvTensors<T>& grad);
+  void weight_products(int step, int gate, int nodes);
   void unfold(const GatedGraphConvTensors<T>& grad);
-  void sum_biases(int nodes, const GatedGraphConvTensors<T>& grad);
 
   // Columns of h that can differ from 0 before step l.
   int live_columns(int step) const { return step == 0 ? shape_.inputs : shape_.width; }
 
   GatedGraphConvShape shape_;
   GatedGraphConvTensors<const T> weights_{};
-  std::vector<T> folded_;       // P: [L, D, 3D], columns in the order n, r, z
-  std::vector<T> bias_;         // [4D], in the order n, r, z, hn
-  std::vector<T> folded_grad_;  // by P, the same layout
-  std::vector<T> bias_grad_;    // [L, 4D]
+  PackedMatrix<T> w_ih_;                            // W_ihᵀ: [D, 3D], columns in the order n, r, z
+  PackedMatrix<T> w_hh_reset_update_;               // W_hhᵀ: [D, 2D], r and z
+  PackedMatrix<T> w_hh_new_;                        // [D, D], hn
+  PackedMatrix<T> w_hh_;                            // W_hh: [3D, D]; for backward only
+  std::vector<PackedMatrix<T>> folded_;             // P_l: [D, 3D], columns in the order n, r, z
+  std::vector<PackedMatrix<T>> folded_transposed_;  // P_lᵀ: [3D, D]; for backward only
+  std::vector<T> bias_;                             // [4D], in the order n, r, z, hn
+  std::vector<T> folded_grad_;                      // by P: [L, D, 3D]
+  std::vector<T> w_hh_grad_;                        // by W_hhᵀ, a step's share each: [L, D, 3D], r, z, hn
+  std::vector<T> bias_grad_;                        // [L, 4D]
   std::vector<Chunk> chunks_;
   std::vector<T> state_;    // h before step l: [L, N, D]; without keep only [N, D]
   std::vector<T> message_;  // A h: likewise

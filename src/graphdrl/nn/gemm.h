@@ -1,49 +1,77 @@
-// Row-major matrix products C = op(A) op(B) + β · C, on CBLAS.
+// Row-major matrix products C = op(A) B, or C += op(A) B, on kernels of our own: a network multiplies by the same
+// weights again and again, so they are packed once, and its shapes are too small for a general library to do well
+// (docs/performance.md).
 #pragma once
 
-#include <cblas.h>
-
 #include <vector>
+
+#include "graphdrl/nn/gemm_kernel.h"
 
 namespace graphdrl {
 
 enum class Op { kNone, kTranspose };
 
-// One product: a: [m, k] (or [k, m] transposed) with rows `lda` apart; b: [k, n] (or [n, k]); c: [m, n].
-struct GemmCall {
-  Op op_a;
-  Op op_b;
+// A right operand [k, n], laid out as the kernels read it: panels of 32 columns, padded with zeros. Memory grows and is
+// then reused. T is float or double.
+template <typename T>
+class PackedMatrix {
+ public:
+  int rows() const { return rows_; }        // k
+  int columns() const { return columns_; }  // n
+
+  // All zeros, of the given size.
+  void reset(int rows, int columns);
+
+  // Columns [first, first + count) from op(b): [rows, count], rows of b `ldb` apart.
+  void set_columns(int first, int count, Op op, const T* b, int ldb);
+
+  // All of it.
+  void set(int rows, int columns, Op op, const T* b, int ldb) {
+    reset(rows, columns);
+    set_columns(0, columns, op, b, ldb);
+  }
+
+  void set_transposed(const PackedMatrix& other);
+
+  int panel_count() const { return (columns_ + kPanelColumns - 1) / kPanelColumns; }
+  T* panel(int index) { return values_[static_cast<std::size_t>(index) * rows_].values; }
+  const T* panel(int index) const { return values_[static_cast<std::size_t>(index) * rows_].values; }
+
+ private:
+  struct alignas(64) PanelRow {
+    T values[kPanelColumns];
+  };
+  int rows_ = 0;
+  int columns_ = 0;
+  std::vector<PanelRow> values_;
+};
+
+// c [m, n] = op(a) b, or c += op(a) b, with the first k rows and the first n columns of b. a: [m, k] with rows `lda`
+// apart, or [k, m] transposed.
+template <typename T>
+void gemm(Op op_a, int m, int n, int k, const T* a, int lda, const PackedMatrix<T>& b, bool accumulate, T* c, int ldc);
+
+// c = a b, laid out as a right operand itself. a: [m, k].
+template <typename T>
+void gemm(int m, const T* a, int lda, const PackedMatrix<T>& b, PackedMatrix<T>& c);
+
+// c [m, n] = op(a) op(b), or c += op(a) op(b), where b is met once only.
+template <typename T>
+void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b, int ldb, bool accumulate, T* c,
+          int ldc);
+
+// The shape of a product, as this thread notes it for benchmarks.
+struct GemmShape {
+  bool a_transposed;
   int m;
   int n;
   int k;
   int lda;
-  int ldb;
   int ldc;
-  float beta;
 };
+inline thread_local std::vector<GemmShape>* gemm_log = nullptr;  // null to note nothing
 
-// Where this thread notes its float products, for benchmarks; null to note nothing.
-inline thread_local std::vector<GemmCall>* gemm_log = nullptr;
-
-inline CBLAS_TRANSPOSE cblas_op(Op op) {
-  return op == Op::kNone ? CblasNoTrans : CblasTrans;
-}
-
-inline void gemm(const GemmCall& call, const float* a, const float* b, float* c) {
-  cblas_sgemm(CblasRowMajor, cblas_op(call.op_a), cblas_op(call.op_b), call.m, call.n, call.k, 1.0f, a, call.lda, b,
-              call.ldb, call.beta, c, call.ldc);
-}
-
-inline void gemm(Op op_a, Op op_b, int m, int n, int k, const float* a, int lda, const float* b, int ldb, float beta,
-                 float* c, int ldc) {
-  const GemmCall call{op_a, op_b, m, n, k, lda, ldb, ldc, beta};
-  if (gemm_log != nullptr) gemm_log->push_back(call);
-  gemm(call, a, b, c);
-}
-
-inline void gemm(Op op_a, Op op_b, int m, int n, int k, const double* a, int lda, const double* b, int ldb, double beta,
-                 double* c, int ldc) {
-  cblas_dgemm(CblasRowMajor, cblas_op(op_a), cblas_op(op_b), m, n, k, 1.0, a, lda, b, ldb, beta, c, ldc);
-}
+// The instruction set in use: "avx512", "avx2" or "plain".
+const char* gemm_isa();
 
 }  // namespace graphdrl

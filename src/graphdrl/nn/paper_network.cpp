@@ -229,7 +229,7 @@ void PaperNetwork::q_values(const GraphBatch& batch, std::span<const float> x, s
     const float* const bias = parameters_->tensor(name + ".bias");
     for (int g = 0; g < graphs; ++g) std::copy_n(bias, width, out + static_cast<std::ptrdiff_t>(g) * width);
     gemm(Op::kNone, Op::kTranspose, graphs, width, inputs, in, inputs, parameters_->tensor(name + ".weight"), inputs,
-         1.0f, out, width);
+         true, out, width);
   };
   linear("fc1", kPooledWidth, kHiddenWidth, pooled_.data(), hidden_.data());
   elu(hidden_.data(), hidden_.size());

@@ -17,6 +17,12 @@
 namespace graphdrl {
 namespace {
 
+template <typename T>
+GRAPHDRL_INLINE T clamp(T x, T limit) {
+  x = x < -limit ? -limit : x;
+  return x > limit ? limit : x;
+}
+
 GRAPHDRL_INLINE double exponential(double x) {
   return std::exp(x);
 }
@@ -28,8 +34,7 @@ GRAPHDRL_INLINE float exponential(float x) {
   constexpr float kLn2High = 0.693359375f;  // the two parts of ln 2: the first multiplies k exactly
   constexpr float kLn2Low = -2.12194440e-4f;
   constexpr float kRound = 12582912.0f;  // 1.5 · 2^23: adding it leaves the nearest integer in the low bits
-  x = x < -87.0f ? -87.0f : x;
-  x = x > 88.0f ? 88.0f : x;
+  x = clamp(x, 87.0f);
   const float shifted = x * kLog2E + kRound;
   const float k = shifted - kRound;
   const float f = (x - k * kLn2High) - k * kLn2Low;
@@ -42,11 +47,6 @@ GRAPHDRL_INLINE float exponential(float x) {
   p = p * f + 1.0f;
   const std::int32_t bits = std::bit_cast<std::int32_t>(p) + (std::bit_cast<std::int32_t>(shifted) << 23);
   return std::bit_cast<float>(bits);
-}
-
-template <typename T>
-GRAPHDRL_INLINE T sigmoid(T x) {
-  return T{1} / (T{1} + exponential(-x));
 }
 
 template <typename T>
@@ -65,8 +65,12 @@ GRAPHDRL_INLINE void gru_forward_rows(int rows, int width, const T* bias, T* gat
     T* const next = h_next + static_cast<std::ptrdiff_t>(row) * width;
 #pragma omp simd
     for (int i = 0; i < width; ++i) {
-      const T reset = sigmoid(r[i] + bias[width + i]);
-      const T update = sigmoid(z[i] + bias[2 * width + i]);
+      // The two sigmoids share a division, the dearest operation here; past ±40 they are 0 and 1 to the last bit.
+      const T by_reset = T{1} + exponential(-clamp(r[i] + bias[width + i], T{40}));
+      const T by_update = T{1} + exponential(-clamp(z[i] + bias[2 * width + i], T{40}));
+      const T inverse = T{1} / (by_reset * by_update);
+      const T reset = inverse * by_update;
+      const T update = inverse * by_reset;
       const T share = hn[i] + bias[3 * width + i];
       const T candidate = hyperbolic_tangent(n[i] + bias[i] + reset * share);
       n[i] = candidate;

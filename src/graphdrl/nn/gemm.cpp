@@ -1,0 +1,159 @@
+#include "graphdrl/nn/gemm.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace graphdrl {
+namespace {
+
+constexpr int kTransposeBlock = 16;
+
+struct Kernel {
+  const char* isa;
+  void (*multiply)(const GemmTask<float>& task);
+};
+
+Kernel choose_kernel() {
+#if defined(GRAPHDRL_X86_KERNELS)
+  if (__builtin_cpu_supports("avx512f")) return {"avx512", avx512::multiply};
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {"avx2", avx2::multiply};
+#endif
+  return {"plain", plain::multiply};
+}
+
+const Kernel& kernel() {
+  static const Kernel chosen = choose_kernel();
+  return chosen;
+}
+
+void multiply(const GemmTask<float>& task) {
+  kernel().multiply(task);
+}
+
+void multiply(const GemmTask<double>& task) {
+  plain::multiply(task);
+}
+
+void note(Op op_a, int m, int n, int k, int lda, int ldc) {
+  if (gemm_log != nullptr) gemm_log->push_back({op_a == Op::kTranspose, m, n, k, lda, ldc});
+}
+
+}  // namespace
+
+const char* gemm_isa() {
+  return kernel().isa;
+}
+
+template <typename T>
+void PackedMatrix<T>::reset(int rows, int columns) {
+  rows_ = rows;
+  columns_ = columns;
+  const std::size_t size = static_cast<std::size_t>(panel_count()) * rows;
+  if (columns % kPanelColumns == 0) {  // no padding: set_columns writes every value
+    values_.resize(size);
+  } else {
+    values_.assign(size, PanelRow{});
+  }
+}
+
+template <typename T>
+void PackedMatrix<T>::set_columns(int first, int count, Op op, const T* b, int ldb) {
+  for (int column = first; column < first + count;) {
+    const int lane = column % kPanelColumns;
+    const int width = std::min(kPanelColumns - lane, first + count - column);
+    T* const to = panel(column / kPanelColumns) + lane;
+    const std::ptrdiff_t at = column - first;
+    if (op == Op::kNone) {
+      for (int row = 0; row < rows_; ++row) {
+        const T* const from = b + static_cast<std::ptrdiff_t>(row) * ldb + at;
+        T* const out = to + static_cast<std::ptrdiff_t>(row) * kPanelColumns;
+        if (width == kPanelColumns) {
+          std::copy_n(from, kPanelColumns, out);  // of a known size: a few vector moves, no call
+        } else {
+          std::copy_n(from, width, out);
+        }
+      }
+    } else {
+      for (int row = 0; row < rows_; row += kTransposeBlock) {
+        const int end = std::min(row + kTransposeBlock, rows_);
+        for (int j = 0; j < width; ++j) {
+          const T* const from = b + (at + j) * ldb;
+          for (int i = row; i < end; ++i) to[static_cast<std::ptrdiff_t>(i) * kPanelColumns + j] = from[i];
+        }
+      }
+    }
+    column += width;
+  }
+}
+
+template <typename T>
+void PackedMatrix<T>::set_transposed(const PackedMatrix& other) {
+  reset(other.columns(), other.rows());
+  for (int index = 0; index < other.panel_count(); ++index) {  // 32 rows of this one
+    const T* const from = other.panel(index);
+    const int first = index * kPanelColumns;
+    const int count = std::min(kPanelColumns, rows_ - first);
+    for (int block = 0; block < columns_; block += kTransposeBlock) {
+      const int end = std::min(block + kTransposeBlock, columns_);
+      for (int i = 0; i < count; ++i) {
+        T* const to = panel(block / kPanelColumns) + (first + i) * static_cast<std::ptrdiff_t>(kPanelColumns) -
+                      block / kPanelColumns * kPanelColumns;
+        for (int j = block; j < end; ++j) to[j] = from[static_cast<std::ptrdiff_t>(j) * kPanelColumns + i];
+      }
+    }
+  }
+}
+
+template <typename T>
+void gemm(Op op_a, int m, int n, int k, const T* a, int lda, const PackedMatrix<T>& b, bool accumulate, T* c, int ldc) {
+  note(op_a, m, n, k, lda, ldc);
+  for (int column = 0; column < n; column += kPanelColumns) {
+    multiply({.transposed = op_a == Op::kTranspose,
+              .accumulate = accumulate,
+              .m = m,
+              .k = k,
+              .columns = std::min(kPanelColumns, n - column),
+              .a = a,
+              .lda = lda,
+              .panel = b.panel(column / kPanelColumns),
+              .c = c + column,
+              .ldc = ldc});
+  }
+}
+
+template <typename T>
+void gemm(int m, const T* a, int lda, const PackedMatrix<T>& b, PackedMatrix<T>& c) {
+  note(Op::kNone, m, b.columns(), b.rows(), lda, b.columns());
+  c.reset(m, b.columns());
+  for (int index = 0; index < b.panel_count(); ++index) {
+    multiply({.transposed = false,
+              .accumulate = false,
+              .m = m,
+              .k = b.rows(),
+              .columns = kPanelColumns,
+              .a = a,
+              .lda = lda,
+              .panel = b.panel(index),
+              .c = c.panel(index),
+              .ldc = kPanelColumns});
+  }
+}
+
+template <typename T>
+void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b, int ldb, bool accumulate, T* c,
+          int ldc) {
+  static thread_local PackedMatrix<T> packed;
+  packed.set(k, n, op_b, b, ldb);
+  gemm(op_a, m, n, k, a, lda, packed, accumulate, c, ldc);
+}
+
+#define GRAPHDRL_INSTANTIATE(T)                                                                \
+  template class PackedMatrix<T>;                                                              \
+  template void gemm(Op, int, int, int, const T*, int, const PackedMatrix<T>&, bool, T*, int); \
+  template void gemm(int, const T*, int, const PackedMatrix<T>&, PackedMatrix<T>&);            \
+  template void gemm(Op, Op, int, int, int, const T*, int, const T*, int, bool, T*, int);
+GRAPHDRL_INSTANTIATE(float)
+GRAPHDRL_INSTANTIATE(double)
+#undef GRAPHDRL_INSTANTIATE
+
+}  // namespace graphdrl
