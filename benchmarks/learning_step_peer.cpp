@@ -12,7 +12,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/nn/features.h"
 #include "graphdrl/planners/network_policy.h"
-#include "graphdrl/train/learner.h"
+#include "graphdrl/train/kernel_learner.h"
 
 namespace graphdrl {
 namespace {
@@ -47,7 +47,7 @@ int serve(const std::string& file, int threads) {
   const World world = load_one_world("paper:a");
   const std::vector<FeatureEncoder> encoders = {FeatureEncoder(world)};
   const ReplayBuffer replay = random_replay(world, rng);
-  Learner learner({}, rng);
+  KernelLearner learner({}, rng);
   Minibatch batch;  // the first transitions, for the losses to agree on
   batch.clear();
   for (std::size_t i = 0; i < kBatchSize; ++i) append_transition(replay, i, encoders.front(), batch);

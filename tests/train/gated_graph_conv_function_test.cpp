@@ -3,31 +3,10 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include "graphdrl/train/composed_network.h"
+
 namespace graphdrl {
 namespace {
-
-// The same layer composed of LibTorch's own operators.
-torch::Tensor composed(const GraphBatch& batch, torch::Tensor x, const GatedGraphConvLeaves& leaves) {
-  std::vector<std::int64_t> from;
-  std::vector<std::int64_t> to;
-  for (int g = 0; g < batch.graph_count(); ++g) {
-    for (NodeId node = 0; node < batch.graph(g).node_count(); ++node) {
-      for (const NodeId next : batch.graph(g).neighbours(node)) {
-        from.push_back(batch.first_node(g) + next);
-        to.push_back(batch.first_node(g) + node);
-      }
-    }
-  }
-  const std::int64_t width = leaves.weight.size(1);
-  torch::Tensor h = torch::constant_pad_nd(x, {0, width - x.size(1)});
-  for (std::int64_t step = 0; step < leaves.weight.size(0); ++step) {
-    const torch::Tensor sent = torch::matmul(h, leaves.weight[step]);
-    const torch::Tensor message =
-        torch::zeros_like(sent).index_add(0, torch::tensor(to), sent.index_select(0, torch::tensor(from)));
-    h = torch::gru_cell(message, h, leaves.w_ih, leaves.w_hh, leaves.b_ih, leaves.b_hh);
-  }
-  return h;
-}
 
 TEST(GatedGraphConvFunction, IsTheComposedOperatorForwardAndBackward) {
   torch::manual_seed(1);
@@ -43,7 +22,12 @@ TEST(GatedGraphConvFunction, IsTheComposedOperatorForwardAndBackward) {
     const torch::Tensor weighting = torch::randn({batch.node_count(), width});
     const std::vector<torch::Tensor> inputs = {x, leaves.weight, leaves.w_ih, leaves.w_hh, leaves.b_ih, leaves.b_hh};
 
-    torch::Tensor expected = composed(batch, x, leaves);
+    const NamedTensors tensors = {{"conv.weight", leaves.weight},
+                                  {"conv.rnn.weight_ih", leaves.w_ih},
+                                  {"conv.rnn.weight_hh", leaves.w_hh},
+                                  {"conv.rnn.bias_ih", leaves.b_ih},
+                                  {"conv.rnn.bias_hh", leaves.b_hh}};
+    torch::Tensor expected = composed_conv(edge_index(batch, torch::kCPU), x, tensors, "conv");
     if (shape.elu) expected = torch::elu(expected);
     const auto expected_grads = torch::autograd::grad({(expected * weighting).sum()}, inputs);
 

@@ -1,10 +1,11 @@
-#include "graphdrl/train/learner.h"
+#include "graphdrl/train/kernel_learner.h"
 
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
 #include "graphdrl/env/episode.h"
 #include "graphdrl/nn/features.h"
+#include "graphdrl/train/device_learner.h"
 #include "graphdrl/train/td_target.h"
 #include "support.h"
 
@@ -75,7 +76,7 @@ TEST(Learner, LearnsTheExactValuesOfAGraphOfFourNodes) {
   }
   for (const bool double_dqn : {false, true}) {
     Rng rng(1);
-    Learner learner(
+    KernelLearner learner(
         {.double_dqn = double_dqn, .discount = 0.5, .learning_rate = 1e-3, .soft_update = 0.05, .dropout = 0}, rng);
     for (int step = 0; step < 700; ++step) learner.learn(batch, rng);
     std::vector<float> q(batch.actions.size() * kActionCount);
@@ -99,7 +100,7 @@ TEST(Learner, MovesTheTargetByTheSoftUpdate) {
   add_transition(tiny, {}, 2, batch);
   add_transition(tiny, {2}, 1, batch);
   Rng rng(1);
-  Learner learner({.soft_update = 0.25}, rng);
+  KernelLearner learner({.soft_update = 0.25}, rng);
   const torch::Tensor before = learner.target().values().clone();
   EXPECT_TRUE(torch::equal(before, learner.online().values())) << "the target starts as a copy";
   learner.learn(batch, rng);
@@ -108,6 +109,36 @@ TEST(Learner, MovesTheTargetByTheSoftUpdate) {
   EXPECT_FALSE(torch::equal(learner.online().values(), before));
   // Batch norm's running statistics, the last values, move too.
   EXPECT_NE(learner.online().values()[-1].item<float>(), before[-1].item<float>());
+}
+
+TEST(Learner, OfLibTorchsOperatorsLearnsWhatTheKernelsLearn) {
+  const TinyWorld tiny;
+  Minibatch batch;
+  batch.graphs.clear();
+  for (const int action : {0, 1, 2, 3}) add_transition(tiny, {2}, action, batch);
+  for (const bool double_dqn : {false, true}) {
+    const LearnerOptions options{.double_dqn = double_dqn, .soft_update = 0.1};
+    Rng kernel_rng(1);
+    Rng device_rng(1);
+    KernelLearner kernel(options, kernel_rng);
+    DeviceLearner device(torch::kCPU, options, device_rng);
+    for (int step = 0; step < 5; ++step) {
+      const double loss = kernel.learn(batch, kernel_rng);
+      EXPECT_NEAR(device.learn(batch, device_rng), loss, 1e-3 * loss);
+    }
+    std::vector<float> q(batch.actions.size() * kActionCount);
+    std::vector<float> device_q(q.size());
+    kernel.q_values(batch.graphs, batch.x, q);
+    device.q_values(batch.graphs, batch.x, device_q);
+    for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(device_q[i], q[i], 2e-3);
+
+    // The state of one is a state of the other.
+    device.set_state(kernel.state());
+    device.q_values(batch.graphs, batch.x, device_q);
+    for (std::size_t i = 0; i < q.size(); ++i) EXPECT_NEAR(device_q[i], q[i], 1e-4);
+    EXPECT_EQ(device.state().adam_steps, 5);
+    EXPECT_EQ(device.state().adam_second, kernel.state().adam_second);
+  }
 }
 
 }  // namespace

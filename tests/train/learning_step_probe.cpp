@@ -8,7 +8,7 @@
 #include "graphdrl/env/episode.h"
 #include "graphdrl/io/map_source.h"
 #include "graphdrl/nn/features.h"
-#include "graphdrl/train/learner.h"
+#include "graphdrl/train/kernel_learner.h"
 
 namespace graphdrl {
 namespace {
@@ -69,7 +69,7 @@ int write_probe(const std::string& out, bool double_dqn) {
     first_nodes.push_back(batch.graphs.node_count());
   }
 
-  Learner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);
+  KernelLearner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);
   disturb(learner.online(), rng);
   disturb(learner.target(), rng);
   std::vector<float> q(batch.actions.size() * kActionCount);

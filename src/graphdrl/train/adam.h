@@ -30,6 +30,9 @@ class Adam {
   std::int64_t& steps() { return steps_; }
   std::vector<float>& first() { return first_; }
   std::vector<float>& second() { return second_; }
+  std::int64_t steps() const { return steps_; }
+  const std::vector<float>& first() const { return first_; }
+  const std::vector<float>& second() const { return second_; }
 
  private:
   AdamOptions options_;

@@ -1,12 +1,17 @@
-// One learning step of DQN: targets, loss, Adam, soft update [paper, section 2 and Algorithm 1, lines 9 to 11].
+// One learning step of DQN: targets, loss, Adam, soft update [paper, section 2 and Algorithm 1, lines 9 to 11], as the
+// trainer sees it. KernelLearner does it with the kernels of nn/ on the CPU, DeviceLearner with LibTorch's operators on
+// any device it has.
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
-#include "graphdrl/train/adam.h"
+#include "graphdrl/base/random.h"
+#include "graphdrl/io/safetensors.h"
+#include "graphdrl/nn/paper_network.h"
 #include "graphdrl/train/minibatch.h"
-#include "graphdrl/train/q_network.h"
 
 namespace graphdrl {
 
@@ -18,36 +23,36 @@ struct LearnerOptions {
   double dropout = 0.5;
 };
 
-// The online and the target network and the optimiser. Everything it does is the same for any number of threads.
+// All that a learner has learned; the same whatever device it runs on.
+struct LearnerState {
+  PaperParameters online;
+  PaperParameters target;
+  std::vector<float> adam_first;   // [240678], the mean of the gradients
+  std::vector<float> adam_second;  // of their squares
+  std::int64_t adam_steps = 0;
+};
+
 class Learner {
  public:
-  // Initialises the online network from rng and copies it to the target.
-  Learner(const LearnerOptions& options, Rng& rng);
+  virtual ~Learner() = default;
 
   // One step; gives the loss before it. `rng` draws the dropout.
-  double learn(const Minibatch& batch, Rng& rng);
+  virtual double learn(const Minibatch& batch, Rng& rng) = 0;
 
-  // The loss [paper, eq. 5]; its gradients stay in online().gradients(), not clamped yet.
-  // keep_scale: [B, 256], see QNetwork::forward_train.
-  double compute_gradients(const Minibatch& batch, const torch::Tensor& keep_scale);
+  // The online network in eval mode. x: [N, F], q: [B, A].
+  virtual void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) = 0;
 
-  QNetwork& online() { return online_; }
-  QNetwork& target() { return target_; }
-
-  // For checkpoints: the arrays online.*, target.*, adam.*. Restoring throws Error where they do not fit.
-  struct Packed {
-    std::vector<std::int64_t> adam_step;  // [1]
-  };
-  void save(Packed& packed, std::vector<TensorView>& tensors);
-  void restore(const Safetensors& file);
-
- private:
-  LearnerOptions options_;
-  QNetwork online_;
-  QNetwork target_;
-  Adam adam_;
-  std::vector<float> next_q_;       // [B, A]
-  std::vector<float> next_online_;  // [B, A]
+  virtual LearnerState state() const = 0;
+  virtual void set_state(const LearnerState& state) = 0;
 };
+
+// A learner on a device by its name: "cpu" or "cuda". Initialises the online network from rng and copies it to the
+// target. Throws Error where LibTorch does not have the device.
+std::unique_ptr<Learner> make_learner(const std::string& device, const LearnerOptions& options, Rng& rng);
+
+// The arrays online.*, target.* and adam.* of a checkpoint, as views of `state`.
+void append_state(const LearnerState& state, std::vector<TensorView>& tensors);
+// Throws Error where they do not fit.
+LearnerState read_state(const Safetensors& file);
 
 }  // namespace graphdrl

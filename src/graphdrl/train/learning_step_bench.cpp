@@ -10,7 +10,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/statistics.h"
 #include "graphdrl/nn/gemm.h"
-#include "graphdrl/train/learner.h"
+#include "graphdrl/train/kernel_learner.h"
 #include "graphdrl/train/minibatch.h"
 
 namespace graphdrl {
@@ -95,7 +95,7 @@ LearningStepTime time_learning_step(int threads) {
   const std::vector<FeatureEncoder> encoders = {FeatureEncoder(world)};
   Rng rng(1);
   const ReplayBuffer replay = random_replay(world, rng);
-  Learner learner({}, rng);
+  KernelLearner learner({}, rng);
   Minibatch batch;
   const auto step = [&] {
     sample_minibatch(replay, encoders, kBatchSize, rng, batch);

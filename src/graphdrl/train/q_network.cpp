@@ -9,19 +9,8 @@ QNetwork::QNetwork(PaperParameters parameters) : parameters_(std::move(parameter
   const std::span<float> memory = parameters_.values();
   values_ = torch::from_blob(memory.data(), {static_cast<std::int64_t>(memory.size())});
   gradients_ = torch::zeros({static_cast<std::int64_t>(PaperParameters::trainable_count())});
-  for (const TensorSpec& spec : PaperParameters::specs()) {
-    torch::Tensor leaf = view(values_, spec);
-    if (spec.trainable) {
-      leaf.set_requires_grad(true);
-      leaf.mutable_grad() = view(gradients_, spec);  // backward() adds to the flat gradient
-    }
-    leaves_[spec.name] = leaf;
-  }
+  leaves_ = named_tensors(values_, gradients_);
   update();
-}
-
-torch::Tensor QNetwork::view(const torch::Tensor& flat, const TensorSpec& spec) const {
-  return flat.narrow(0, static_cast<std::int64_t>(spec.offset), static_cast<std::int64_t>(spec.size)).view(spec.shape);
 }
 
 GatedGraphConvLeaves QNetwork::conv_leaves(int layer) const {

@@ -3,11 +3,9 @@
 
 #include <torch/types.h>
 
-#include <map>
-#include <string>
-
 #include "graphdrl/base/random.h"
 #include "graphdrl/nn/paper_network.h"
+#include "graphdrl/train/composed_network.h"
 #include "graphdrl/train/gated_graph_conv_function.h"
 
 namespace graphdrl {
@@ -37,14 +35,13 @@ class QNetwork {
   torch::Tensor& gradients() { return gradients_; }  // [240678], of the trainable ones, in the buffer's order
 
  private:
-  torch::Tensor view(const torch::Tensor& flat, const TensorSpec& spec) const;
   GatedGraphConvLeaves conv_leaves(int layer) const;
 
   PaperParameters parameters_;
   PaperNetwork inference_;
   torch::Tensor values_;
   torch::Tensor gradients_;
-  std::map<std::string, torch::Tensor> leaves_;  // by PyTorch's names
+  NamedTensors leaves_;
 };
 
 // 0 with probability p, else 1 / (1 - p); [rows, width] float32.

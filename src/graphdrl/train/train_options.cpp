@@ -53,6 +53,7 @@ void validate(const TrainOptions& options) {
   check_choice("--preset", options.preset, {"paper"});
   check_choice("--reward", options.reward, {"visit_penalty", "coverage_gain"});
   check_choice("--algorithm", options.algorithm, {"dqn", "double_dqn"});
+  check_choice("--device", options.device, {"cpu", "cuda"});
   check_range<std::int64_t>("--episodes", options.episodes, 1, kMany);
   check_range<std::int64_t>("--batch-size", options.batch_size, 1, 65'536);
   check_range<std::int64_t>("--replay-capacity", options.replay_capacity, options.batch_size + 1, kMany);

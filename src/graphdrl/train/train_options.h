@@ -33,6 +33,7 @@ struct TrainOptions {
   double soft_update = 1e-3;
   double dropout = 0.5;
   std::int64_t checkpoint_every = 100;
+  std::string device = "cpu";
 };
 
 // Calls field(key, member, help) for every option, in the order of the help.
@@ -56,6 +57,7 @@ void for_each_field(Options& options, const Field& field) {
   field("soft_update", options.soft_update, "Share of the online weights in the target's, per step; the paper's beta");
   field("dropout", options.dropout, "Probability to drop a hidden value");
   field("checkpoint_every", options.checkpoint_every, "Episodes between checkpoints");
+  field("device", options.device, "cpu or cuda; cuda needs a LibTorch that has it");
 }
 
 // Throws Error, naming the option, on a value out of range.

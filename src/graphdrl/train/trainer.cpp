@@ -50,7 +50,7 @@ Trainer::Trainer(const TrainOptions& options, RunDirectory run, std::vector<Worl
       worlds_(std::move(worlds)),
       encoders_(worlds_.begin(), worlds_.end()),
       rng_(options.seed),
-      learner_(learner_options(options), rng_),
+      learner_(make_learner(options.device, learner_options(options), rng_)),
       replay_(static_cast<std::size_t>(options.replay_capacity), largest(worlds_)) {
   for (const World& world : worlds_) episodes_.emplace_back(world, episode_options(options_, world));
 }
@@ -148,7 +148,7 @@ int Trainer::choose_action() {
   std::array<float, kActionCount> q{};
   single_.clear();
   single_.add(worlds_[world_].graph());
-  learner_.online().q_values(single_, features_, q);
+  learner_->q_values(single_, features_, q);
   return argmax(q);
 }
 
@@ -170,7 +170,7 @@ void Trainer::remember(int action, const StepResult& step, NodeId from) {
 void Trainer::learn() {
   if (replay_.size() <= static_cast<std::size_t>(options_.batch_size)) return;
   sample_minibatch(replay_, encoders_, options_.batch_size, rng_, minibatch_);
-  const double loss = learner_.learn(minibatch_, rng_);
+  const double loss = learner_->learn(minibatch_, rng_);
   if (!std::isfinite(loss)) {
     throw std::runtime_error(
         fmt::format("the loss is not finite at step {}: try a smaller --learning-rate", progress_.steps));

@@ -76,7 +76,7 @@ class Trainer {
   std::vector<FeatureEncoder> encoders_;  // of the worlds
   std::vector<Episode> episodes_;         // one per world, reset again and again
   Rng rng_;
-  Learner learner_;
+  std::unique_ptr<Learner> learner_;
   ReplayBuffer replay_;
   TrainingProgress progress_;
 

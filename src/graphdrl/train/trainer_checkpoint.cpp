@@ -63,9 +63,9 @@ std::vector<World> Trainer::unpack_worlds(const Safetensors& file) {
 
 void Trainer::save() {
   std::vector<TensorView> tensors;
-  Learner::Packed learner;
+  const LearnerState learner = learner_->state();
   ReplayBuffer::Packed replay;
-  learner_.save(learner, tensors);
+  append_state(learner, tensors);
   replay_.save(replay, tensors);
   const Rng::State random = rng_.state();
   tensors.emplace_back("random.state", Shape{4}, std::span<const std::uint64_t>(random));
@@ -79,7 +79,7 @@ void Trainer::save() {
   nlohmann::ordered_json json;
   for_each_progress_field(progress_, [&](const char* key, const auto& value) { json[key] = value; });
   write_safetensors(run_.checkpoint(), tensors, {{kProgressKey, json.dump()}, {kWorldsKey, pack_worlds(worlds_)}});
-  write_policy_file(run_.policy(), learner_.online().parameters());
+  write_policy_file(run_.policy(), learner.online);
 }
 
 void Trainer::restore(const Safetensors& file) {
@@ -95,7 +95,7 @@ void Trainer::restore(const Safetensors& file) {
   if (progress_.episode > options_.episodes || progress_.window_episodes > progress_.episode) {
     fail("the checkpoint is not of this run: it has done more episodes than there are");
   }
-  learner_.restore(file);
+  learner_->set_state(read_state(file));
   replay_.restore(file, [&](const Transition& t) {
     if (t.world < 0 || t.world >= std::ssize(worlds_)) return false;
     const auto inside = [&](NodeId node) { return node >= 0 && node < worlds_[t.world].graph().node_count(); };

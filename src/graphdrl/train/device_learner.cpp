@@ -1,0 +1,113 @@
+#include "graphdrl/train/device_learner.h"
+
+#include <torch/torch.h>
+
+#include <cmath>
+
+#include "graphdrl/nn/features.h"
+#include "graphdrl/train/q_network.h"
+#include "graphdrl/train/td_target.h"
+
+namespace graphdrl {
+namespace {
+
+torch::Tensor to_tensor(std::span<const float> values) {
+  return torch::from_blob(const_cast<float*>(values.data()), {static_cast<std::int64_t>(values.size())}).clone();
+}
+
+void copy_out(const torch::Tensor& tensor, std::span<float> values) {
+  const torch::Tensor host = tensor.to(torch::kCPU).contiguous();
+  std::copy_n(host.data_ptr<float>(), values.size(), values.begin());
+}
+
+}  // namespace
+
+DeviceLearner::DeviceLearner(torch::Device device, const LearnerOptions& options, Rng& rng)
+    : device_(device), options_(options), adam_{.learning_rate = options.learning_rate} {
+  LearnerState state;
+  state.online = PaperParameters(rng);
+  state.target = state.online;
+  state.adam_first.resize(PaperParameters::trainable_count());
+  state.adam_second = state.adam_first;
+  set_state(state);
+}
+
+const EdgeIndex& DeviceLearner::edges_of(const GraphBatch& batch) {
+  std::vector<const Graph*> graphs;
+  for (int g = 0; g < batch.graph_count(); ++g) graphs.push_back(&batch.graph(g));
+  if (graphs != edges_graphs_) {
+    edges_ = edge_index(batch, device_);
+    edges_graphs_ = std::move(graphs);
+  }
+  return edges_;
+}
+
+torch::Tensor DeviceLearner::to_device(const std::vector<float>& values, std::vector<std::int64_t> shape) const {
+  return torch::from_blob(const_cast<float*>(values.data()), shape).to(device_);
+}
+
+double DeviceLearner::learn(const Minibatch& batch, Rng& rng) {
+  const std::int64_t graphs = batch.graphs.graph_count();
+  const std::int64_t nodes = batch.graphs.node_count();
+  const EdgeIndex& edges = edges_of(batch.graphs);
+  const torch::Tensor keep_scale = draw_keep_scale(graphs, kHiddenWidth, options_.dropout, rng).to(device_);
+  torch::Tensor targets;
+  {
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor next_x = to_device(batch.next_x, {nodes, kFeatureCount});
+    TdBatch td{.reward = to_device(batch.rewards, {graphs}),
+               .terminal = torch::tensor(std::vector<std::int64_t>(batch.terminal.begin(), batch.terminal.end()))
+                               .to(device_, torch::kBool),
+               .next_q = composed_q_values(edges, next_x, target_),
+               .chooser = {}};
+    td.chooser = options_.double_dqn ? composed_q_values(edges, next_x, online_) : td.next_q;
+    targets = td_targets(td, options_.discount);
+  }
+  gradients_.zero_();
+  const torch::Tensor q = composed_q_values(edges, to_device(batch.x, {nodes, kFeatureCount}), online_, keep_scale);
+  const torch::Tensor chosen = q.gather(1, torch::tensor(batch.actions).to(device_).unsqueeze(1)).squeeze(1);
+  const torch::Tensor loss = torch::mse_loss(chosen, targets);  // L(θ) [paper, eq. 5]
+  loss.backward();
+
+  const torch::NoGradGuard no_grad;
+  ++adam_steps_;
+  const auto t = static_cast<double>(adam_steps_);
+  gradients_.clamp_(-adam_.clamp, adam_.clamp);
+  first_.mul_(adam_.beta1).add_(gradients_, 1 - adam_.beta1);
+  second_.mul_(adam_.beta2).addcmul_(gradients_, gradients_, 1 - adam_.beta2);
+  const torch::Tensor scale = second_.sqrt().div_(std::sqrt(1 - std::pow(adam_.beta2, t))).add_(adam_.epsilon);
+  values_.narrow(0, 0, first_.numel()).addcdiv_(first_, scale, -adam_.learning_rate / (1 - std::pow(adam_.beta1, t)));
+  target_values_.lerp_(values_, options_.soft_update);  // [paper, eq. 6]
+  return loss.item<double>();
+}
+
+void DeviceLearner::q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) {
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor input = to_tensor(x).view({batch.node_count(), kFeatureCount}).to(device_);
+  copy_out(composed_q_values(edge_index(batch, device_), input, online_), q);
+}
+
+LearnerState DeviceLearner::state() const {
+  LearnerState state;
+  state.adam_first.resize(PaperParameters::trainable_count());
+  state.adam_second.resize(PaperParameters::trainable_count());
+  copy_out(values_, state.online.values());
+  copy_out(target_values_, state.target.values());
+  copy_out(first_, state.adam_first);
+  copy_out(second_, state.adam_second);
+  state.adam_steps = adam_steps_;
+  return state;
+}
+
+void DeviceLearner::set_state(const LearnerState& state) {
+  values_ = to_tensor(state.online.values()).to(device_);
+  target_values_ = to_tensor(state.target.values()).to(device_);
+  first_ = to_tensor(state.adam_first).to(device_);
+  second_ = to_tensor(state.adam_second).to(device_);
+  gradients_ = torch::zeros_like(first_);
+  online_ = named_tensors(values_, gradients_);
+  target_ = named_tensors(target_values_);
+  adam_steps_ = state.adam_steps;
+}
+
+}  // namespace graphdrl
