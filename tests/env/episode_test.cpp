@@ -162,5 +162,34 @@ TEST(Episode, AZeroBudgetIsOverAtOnce) {
   EXPECT_THAT(episode.walk(), ElementsAre(3));
 }
 
+TEST(Episode, SpendsCostsAndMasksWhatCannotBePaid) {
+  const std::vector<Edge> edges = {{0, 1, 2.5}, {0, 2, 0.5}, {1, 2, 1}};
+  const World world("triangle", Graph::from_edges(3, edges, EdgeKind::kDirected), std::vector<bool>(3));
+  Episode episode(world, {.budget = 2, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  EXPECT_FALSE(episode.observation().legal(0)) << "2.5 of 2";
+  EXPECT_TRUE(episode.observation().legal(1));
+  EXPECT_FALSE(episode.done());
+  episode.step(1);
+  EXPECT_EQ(episode.spent(), 0.5);
+  EXPECT_EQ(episode.observation().budget_left, 1.5);
+  EXPECT_TRUE(episode.done()) << "no edge leads on";
+  episode.reset(1);
+  episode.step(0);
+  EXPECT_EQ(episode.spent(), 1);
+}
+
+TEST(Episode, ForgivesTheRoundingOfSums) {
+  const std::vector<Edge> edges = {{0, 1, 0.1}};
+  const World world("pair", Graph::from_edges(2, edges), std::vector<bool>(2));
+  Episode episode(world, {.budget = 0.3, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_FALSE(episode.done()) << i;  // 0.1 + 0.1 + 0.1 > 0.3
+    episode.step(0);
+  }
+  EXPECT_TRUE(episode.done());
+}
+
 }  // namespace
 }  // namespace graphdrl

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "graphdrl/graph/grid_map.h"
 #include "graphdrl/graph/search.h"
 #include "support.h"
@@ -21,11 +23,49 @@ TEST(Graph, KeepsNeighboursAscendingAndEdgesOnce) {
   EXPECT_THAT(graph.neighbours(3), ElementsAre(0));
 }
 
-TEST(Graph, RefusesLoopsAndStrangeNodes) {
-  const std::vector<Edge> loop = {{1, 1}};
-  EXPECT_THAT(error_of([&] { Graph::from_edges(3, loop); }), HasSubstr("from node 1 to itself"));
+TEST(Graph, LeavesOutLoopsAndRefusesStrangeNodesAndCosts) {
+  const std::vector<Edge> loop = {{1, 1}, {0, 1}};
+  EXPECT_EQ(Graph::from_edges(3, loop).edge_count(), 1);
+  for (const double cost : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+    const std::vector<Edge> edge = {{0, 1, cost}};
+    EXPECT_THAT(error_of([&] { Graph::from_edges(2, edge); }), HasSubstr("bad cost of the edge from 0 to 1"));
+  }
   const std::vector<Edge> far = {{0, 3}};
   EXPECT_THAT(error_of([&] { Graph::from_edges(3, far); }), HasSubstr("expected node ids 0 to 2, got 3"));
+}
+
+TEST(Graph, KeepsTheCheapestOfParallelEdges) {
+  const std::vector<Edge> edges = {{0, 1, 3}, {1, 0, 2}, {1, 2, 4}};
+  const Graph graph = Graph::from_edges(3, edges);
+  EXPECT_EQ(graph.edge_count(), 2);
+  EXPECT_TRUE(graph.weighted());
+  EXPECT_EQ(graph.cost(0, 0), 2);
+  EXPECT_EQ(graph.cost(1, 1), 4);
+  EXPECT_EQ(graph.mean_cost(), 3);
+  const std::vector<Edge> unit = {{0, 1, 1}};
+  EXPECT_FALSE(Graph::from_edges(2, unit).weighted());
+}
+
+TEST(Graph, DirectedEdgesLeadOneWay) {
+  const std::vector<Edge> edges = {{0, 1, 3}, {1, 0, 2}, {1, 2, 4}};
+  const Graph graph = Graph::from_edges(3, edges, EdgeKind::kDirected);
+  EXPECT_EQ(graph.edge_count(), 3);
+  EXPECT_THAT(graph.neighbours(1), ElementsAre(0, 2));
+  EXPECT_THAT(graph.neighbours(2), ElementsAre());
+  const Graph turned = graph.reversed();
+  EXPECT_THAT(turned.neighbours(2), ElementsAre(1));
+  EXPECT_EQ(turned.cost(2, 0), 4);
+  EXPECT_EQ(turned.cost(0, 0), 2);
+  EXPECT_TRUE(turned.without({false, true, false}).directed());
+  EXPECT_EQ(graph.without({false, false, true}).edge_count(), 2);
+}
+
+TEST(Search, GoesByCostWhereEdgesHaveCosts) {
+  const std::vector<Edge> edges = {{0, 1, 5}, {0, 2, 1}, {2, 1, 1}, {1, 3, 1}};
+  const Graph graph = Graph::from_edges(4, edges);
+  EXPECT_THAT(path_to_nearest(
+                  graph, 0, [](NodeId node) { return node == 3; }, [](NodeId) { return true; }),
+              ElementsAre(2, 1, 3));
 }
 
 TEST(Graph, GridNeighboursStandLeftUpRightDown) {

@@ -10,6 +10,7 @@ void add_bench_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_inspect_command(CLI::App& app);
 void add_maps_command(CLI::App& app);
+void add_plan_command(CLI::App& app);
 void add_train_command(CLI::App& app);
 
 // Where graphdrl-train stands, installed or not: beside this program.

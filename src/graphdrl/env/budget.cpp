@@ -26,12 +26,13 @@ Budget Budget::parse(std::string_view text) {
   return budget;
 }
 
-double Budget::steps_in(const World& world) const {
-  const double steps = relative_ ? std::floor(value_ * world.valid_count() + 1e-9) : value_;
-  if (steps <= kMaxBudget) return steps;
+double Budget::cost_in(const World& world) const {
+  const double mean_cost = world.open().mean_cost();
+  const double cost = relative_ ? std::floor(value_ * world.valid_count() + 1e-9) * mean_cost : value_;
+  if (cost <= static_cast<double>(kMaxBudget) * mean_cost) return cost;
   throw Error({.what = "bad budget",
-               .expected = fmt::format("at most {} steps", kMaxBudget),
-               .got = fmt::format("{} = {} steps", text_, steps),
+               .expected = fmt::format("at most {:g}", static_cast<double>(kMaxBudget) * mean_cost),
+               .got = fmt::format("{} = {:g}", text_, cost),
                .where = world.name()});
 }
 

@@ -1,4 +1,4 @@
-// Budgets as users give them: a number of steps, or a multiple of the number of valid nodes.
+// Budgets as users give them: what an episode may spend, or a multiple of the number of valid nodes.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,16 @@
 
 namespace graphdrl {
 
-inline constexpr std::int64_t kMaxBudget = 1'000'000'000;  // steps; an episode keeps its walk in memory
+inline constexpr std::int64_t kMaxBudget = 1'000'000'000;  // mean edges; an episode keeps its walk in memory
 
-// "25", or "1.1x": floor(1.1 · n + 1e-9) steps in a world of n valid nodes.
+// "25", in units of cost, or "1.1x": floor(1.1 · n + 1e-9) times the mean cost of an edge in a world of n valid nodes.
+// Where edges have no costs, a unit is a step.
 class Budget {
  public:
   // Throws Error on anything but a number from 0 up, with or without the x.
   static Budget parse(std::string_view text);
 
-  double steps_in(const World& world) const;  // throws Error where that is more than kMaxBudget
+  double cost_in(const World& world) const;  // throws Error where that is more than kMaxBudget
   const std::string& text() const { return text_; }
 
  private:

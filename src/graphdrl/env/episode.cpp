@@ -42,13 +42,14 @@ void Episode::reset(NodeId start) {
 
 StepResult Episode::step(int action) {
   const NodeId next = observation().target(action);
+  const double cost = observation().cost(action);
   const bool blocked = next == position_;
   const std::uint32_t visits_before = visits_[next]++;
   const bool first_visit = visits_before == 0;
   visited_count_ += first_visit;
   position_ = next;
   walk_.push_back(next);
-  spent_ += 1;
+  spent_ += cost;
   return {.reward = reward_of(blocked, visits_before), .blocked = blocked, .first_visit = first_visit};
 }
 
@@ -62,8 +63,14 @@ double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
 }
 
 bool Episode::done() const {
-  if (spent_ + 1 > options_.budget || terminal()) return true;
-  return options_.action_space == ActionSpace::kNeighbours && world_->open_neighbours(position_).empty();
+  if (terminal()) return true;
+  const double left = options_.budget - spent_;
+  if (options_.action_space == ActionSpace::kDirections) return !affordable(1.0, left);
+  const Graph& open = world_->open();
+  for (int i = 0; i < open.degree(position_); ++i) {
+    if (affordable(open.cost(position_, i), left)) return false;
+  }
+  return true;
 }
 
 Observation Episode::observation() const {

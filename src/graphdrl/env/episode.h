@@ -17,7 +17,7 @@ enum class RewardKind {
 
 // The defaults are the paper's.
 struct EpisodeOptions {
-  double budget = 25;  // steps; a move costs one
+  double budget = 25;  // in units of cost
   ActionSpace action_space = ActionSpace::kDirections;
   RewardKind reward = RewardKind::kVisitPenalty;
   // Differs from the paper: its author's code ends an episode at full coverage, with a bonus …
@@ -46,7 +46,7 @@ class Episode {
   // Begins a new walk. Throws Error on a start that is blocked or not in the world.
   void reset(NodeId start);
 
-  // REQUIRES: !done(), 0 <= action < observation().action_count().
+  // REQUIRES: !done(), 0 <= action < observation().action_count(), and the action can be paid for.
   StepResult step(int action);
 
   // The budget is spent, or the state is terminal, or there is nowhere to go.
@@ -63,7 +63,7 @@ class Episode {
   const std::vector<NodeId>& walk() const { return walk_; }
   int visited_count() const { return visited_count_; }
   double coverage() const { return static_cast<double>(visited_count_) / world_->valid_count(); }  // eq. 1
-  double spent() const { return spent_; }                                                          // steps
+  double spent() const { return spent_; }                                                          // units of cost
 
  private:
   bool all_visited() const { return visited_count_ == world_->valid_count(); }

@@ -18,6 +18,11 @@ inline constexpr int kNoAction = -1;
 // An answer of a policy that would rather end the episode than walk on.
 inline constexpr int kStop = -1;
 
+// Whether a move can be paid for; sums of costs may be off by rounding.
+inline bool affordable(double cost, double budget_left) {
+  return cost <= budget_left + 1e-9 * (1 + budget_left);
+}
+
 // A view into an episode, valid until its next step.
 struct Observation {
   const World* world;
@@ -26,7 +31,7 @@ struct Observation {
   std::span<const std::uint32_t> visits;  // [N]; the start counts, a blocked move counts for the node stayed on
   std::span<const NodeId> walk;           // every position so far, the start first; a blocked move repeats its node
   int visited_count;                      // valid nodes visited
-  double budget_left;                     // in steps
+  double budget_left;                     // in units of cost
 
   bool visited(NodeId node) const { return visits[node] > 0; }
   bool all_visited() const { return visited_count == world->valid_count(); }
@@ -42,8 +47,14 @@ struct Observation {
                                                     : world->open_neighbours(position)[action];
   }
 
-  // The action mask: false where a move would be blocked. Only for those who ask: directions can all be chosen.
-  bool legal(int action) const { return target(action) != position; }
+  // What an action costs. Directions are of grids, where every move costs 1, blocked or not.
+  double cost(int action) const {
+    return action_space == ActionSpace::kDirections ? 1.0 : world->open().cost(position, action);
+  }
+
+  // The action mask: false where a move would be blocked or costs more than is left. A blocked direction can be chosen
+  // all the same; a move that cannot be paid for cannot.
+  bool legal(int action) const { return target(action) != position && affordable(cost(action), budget_left); }
 
   // The first action that leads to `next`; for the current node, the first blocked one. kNoAction where there is none.
   int action_to(NodeId next) const;

@@ -31,7 +31,8 @@ class World {
   std::span<const NodeId> valid_nodes() const { return valid_nodes_; }  // ascending
   int valid_count() const { return static_cast<int>(valid_nodes_.size()); }
 
-  // The neighbours that are not blocked, in the graph's order.
+  // The graph without the edges of blocked nodes: what can be walked.
+  const Graph& open() const { return open_; }
   std::span<const NodeId> open_neighbours(NodeId node) const { return open_.neighbours(node); }
 
   // Where a direction leads; the node itself where the move is blocked. REQUIRES: is_grid().
@@ -44,7 +45,7 @@ class World {
   Graph graph_;
   std::vector<bool> blocked_;
   std::optional<GridMap> map_;
-  Graph open_;  // graph_ without the edges of blocked nodes
+  Graph open_;
   std::vector<NodeId> valid_nodes_;
   std::vector<std::array<NodeId, 4>> direction_targets_;
 };

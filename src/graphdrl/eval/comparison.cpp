@@ -56,7 +56,7 @@ std::optional<double> mean_optimum(const Arena& arena) {
 std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
-    Arena arena{.world = &world, .budget_steps = options.budget.steps_in(world), .starts = {}, .optimum = {}};
+    Arena arena{.world = &world, .budget_steps = options.budget.cost_in(world), .starts = {}, .optimum = {}};
     const auto nodes = world.valid_nodes();
     if (options.all_starts) {
       arena.starts.assign(nodes.begin(), nodes.end());

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/graph/grid_map.h"
 
 namespace graphdrl {
 
-Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges) {
-  std::vector<std::vector<NodeId>> lists(node_count);
+Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind) {
+  struct Arc {
+    NodeId to;
+    double cost;
+  };
+  std::vector<std::vector<Arc>> lists(node_count);
   for (const Edge& edge : edges) {
     for (const NodeId end : {edge.a, edge.b}) {
       if (end < 0 || end >= node_count) {
@@ -19,17 +24,30 @@ Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges) {
                      .got = fmt::format("{}", end)});
       }
     }
-    if (edge.a == edge.b) throw Error({.what = fmt::format("edge from node {} to itself", edge.a)});
-    lists[edge.a].push_back(edge.b);
-    lists[edge.b].push_back(edge.a);
+    if (!(edge.cost > 0) || !std::isfinite(edge.cost)) {
+      throw Error({.what = fmt::format("bad cost of the edge from {} to {}", edge.a, edge.b),
+                   .expected = "a positive finite number",
+                   .got = fmt::format("{}", edge.cost)});
+    }
+    if (edge.a == edge.b) continue;
+    lists[edge.a].push_back({edge.b, edge.cost});
+    if (kind == EdgeKind::kUndirected) lists[edge.b].push_back({edge.a, edge.cost});
   }
   Graph graph;
+  graph.kind_ = kind;
   for (auto& list : lists) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    graph.neighbours_.insert(graph.neighbours_.end(), list.begin(), list.end());
-    graph.offsets_.push_back(static_cast<std::int64_t>(graph.neighbours_.size()));
+    std::sort(list.begin(), list.end(), [](const Arc& one, const Arc& other) {
+      return one.to != other.to ? one.to < other.to : one.cost < other.cost;
+    });
+    const auto same = [](const Arc& one, const Arc& other) { return one.to == other.to; };
+    list.erase(std::unique(list.begin(), list.end(), same), list.end());
+    for (const Arc& arc : list) {
+      graph.neighbours_.push_back(arc.to);
+      graph.costs_.push_back(arc.cost);
+    }
+    graph.close_node();
   }
+  graph.forget_unit_costs();
   return graph;
 }
 
@@ -40,20 +58,54 @@ Graph Graph::grid(int rows, int cols) {
       const NodeId next = grid_neighbour(rows, cols, node, direction);
       if (next != kNoNode) graph.neighbours_.push_back(next);
     }
-    graph.offsets_.push_back(static_cast<std::int64_t>(graph.neighbours_.size()));
+    graph.close_node();
   }
   return graph;
 }
 
 Graph Graph::without(const std::vector<bool>& dropped) const {
   Graph graph;
+  graph.kind_ = kind_;
   for (NodeId node = 0; node < node_count(); ++node) {
-    for (const NodeId next : neighbours(node)) {
-      if (!dropped[node] && !dropped[next]) graph.neighbours_.push_back(next);
+    for (int i = 0; i < degree(node); ++i) {
+      const NodeId next = neighbours(node)[i];
+      if (dropped[node] || dropped[next]) continue;
+      graph.neighbours_.push_back(next);
+      graph.costs_.push_back(cost(node, i));
     }
-    graph.offsets_.push_back(static_cast<std::int64_t>(graph.neighbours_.size()));
+    graph.close_node();
   }
+  graph.forget_unit_costs();
   return graph;
+}
+
+Graph Graph::reversed() const {
+  if (!directed()) return *this;
+  std::vector<Edge> turned = edges();
+  for (Edge& edge : turned) std::swap(edge.a, edge.b);
+  return from_edges(node_count(), turned, kind_);
+}
+
+double Graph::mean_cost() const {
+  if (costs_.empty()) return 1;
+  double sum = 0;
+  for (const double cost : costs_) sum += cost;
+  return sum / static_cast<double>(costs_.size());
+}
+
+std::vector<Edge> Graph::edges() const {
+  std::vector<Edge> edges;
+  for (NodeId node = 0; node < node_count(); ++node) {
+    for (int i = 0; i < degree(node); ++i) {
+      const NodeId next = neighbours(node)[i];
+      if (directed() || node < next) edges.push_back({node, next, cost(node, i)});
+    }
+  }
+  return edges;
+}
+
+void Graph::forget_unit_costs() {
+  if (std::all_of(costs_.begin(), costs_.end(), [](double cost) { return cost == 1; })) costs_.clear();
 }
 
 }  // namespace graphdrl

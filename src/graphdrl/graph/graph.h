@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -10,38 +11,63 @@ namespace graphdrl {
 using NodeId = std::int32_t;
 inline constexpr NodeId kNoNode = -1;
 
+// Undirected, or from a to b in a directed graph.
 struct Edge {
   NodeId a;
   NodeId b;
+  double cost = 1;
 };
 
-// An undirected graph without loops or parallel edges; nodes are 0 … node_count() - 1. Immutable, so any number of
-// threads may read it. The order of a node's neighbours is part of the graph: searches and ties follow it.
+enum class EdgeKind { kUndirected, kDirected };
+
+// A graph without loops or parallel edges; nodes are 0 … node_count() - 1. Immutable, so any number of threads may read
+// it. The order of a node's neighbours is part of the graph: searches and ties follow it.
 class Graph {
  public:
   Graph() = default;
 
-  // Neighbours in ascending order. Throws Error on an edge out of range or from a node to itself; an edge given twice
-  // counts once.
-  static Graph from_edges(NodeId node_count, std::span<const Edge> edges);
+  // Neighbours in ascending order. A loop is left out, for a walk never gains by it; of parallel edges the cheapest
+  // stays. Throws Error on an edge out of range and on a cost that is not positive and finite.
+  static Graph from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind = EdgeKind::kUndirected);
 
-  // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down.
+  // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down; every edge costs 1.
   // REQUIRES: rows * cols fits a NodeId.
   static Graph grid(int rows, int cols);
 
   // The same nodes, without the edges that touch a dropped one. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;
 
+  // The same graph with every edge turned round; an undirected graph is its own.
+  Graph reversed() const;
+
   NodeId node_count() const { return static_cast<NodeId>(offsets_.size()) - 1; }
-  std::int64_t edge_count() const { return static_cast<std::int64_t>(neighbours_.size()) / 2; }
-  int degree(NodeId node) const { return static_cast<int>(offsets_[node + 1] - offsets_[node]); }
+  std::int64_t edge_count() const { return std::ssize(neighbours_) / (directed() ? 1 : 2); }
+  bool directed() const { return kind_ == EdgeKind::kDirected; }
+  bool weighted() const { return !costs_.empty(); }  // some edge costs other than 1
+
+  // Where edges lead from a node, and how many there are.
   std::span<const NodeId> neighbours(NodeId node) const {
     return {neighbours_.data() + offsets_[node], neighbours_.data() + offsets_[node + 1]};
   }
+  int degree(NodeId node) const { return static_cast<int>(offsets_[node + 1] - offsets_[node]); }
+
+  // What it costs to go to the neighbour of this place in neighbours().
+  double cost(NodeId node, int index) const { return costs_.empty() ? 1.0 : costs_[offsets_[node] + index]; }
+
+  double mean_cost() const;  // of the edges; 1 where there are none
+
+  // Every edge, an undirected one from its lower node.
+  std::vector<Edge> edges() const;
 
  private:
+  // Goes on with the next node, whose neighbours were just added; costs_ has a value for each of them by then.
+  void close_node() { offsets_.push_back(std::ssize(neighbours_)); }
+  void forget_unit_costs();
+
+  EdgeKind kind_ = EdgeKind::kUndirected;
   std::vector<std::int64_t> offsets_ = {0};  // [N + 1]
-  std::vector<NodeId> neighbours_;           // [2E]
+  std::vector<NodeId> neighbours_;           // [2E], or [E] of a directed graph
+  std::vector<double> costs_;                // as neighbours_; empty where every edge costs 1
 };
 
 }  // namespace graphdrl

@@ -35,14 +35,17 @@ class RandomWalkPolicy final : public SingleEpisodePolicy {
   Rng rng_;
 };
 
-// Descends to the first unvisited neighbour in the graph's order, and steps back where there is none. Stops at the
-// root. REQUIRES: it walked the episode from its start. Cost of a move: O(steps walked).
+// Descends to the first unvisited neighbour in the graph's order, and steps back where there is none; in a directed
+// graph it walks to the node entered last from which something is left. Stops at the root, and where the budget does
+// not last. REQUIRES: it walked the episode from its start. Cost of a move: O(steps walked), in directed graphs O(nodes
+// + edges) on top.
 class DepthFirstPolicy final : public SingleEpisodePolicy {
   int act_on(const Observation& observation) override;
 };
 
-// Walks the shortest way to the nearest unvisited node, the first one that breadth-first search meets. Stops when
-// nothing unvisited can be reached. Cost of a move: O(nodes + edges).
+// Walks the cheapest way to the nearest unvisited node, the first one that the search meets. Stops when nothing
+// unvisited can be reached or the next step cannot be paid for. Cost of a move: O(nodes + edges), times a logarithm
+// where edges have costs.
 class NearestUnvisitedPolicy final : public SingleEpisodePolicy {
   int act_on(const Observation& observation) override;
 };

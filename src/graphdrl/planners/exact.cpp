@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 #include <unordered_set>
+
+#include "graphdrl/planners/beam.h"
 
 namespace graphdrl {
 namespace {
@@ -37,40 +41,63 @@ struct Optimum {
 };
 
 // The part of a world in reach of a start, its nodes numbered in ascending order of id.
+struct Reach {
+  explicit Reach(const SearchStart& start);
+
+  std::vector<NodeId> nodes;               // by local index
+  std::vector<NodeSet> neighbours;         // likewise; empty where there are too many nodes
+  std::vector<std::vector<double>> costs;  // [from][to], meaningful along edges; of weighted worlds only
+  State state{};                           // at the start
+};
+
+Reach::Reach(const SearchStart& start) {
+  const Graph& open = start.world->open();
+  nodes = {start.position};
+  std::vector<int> local(open.node_count(), -1);
+  local[start.position] = 0;
+  for (std::size_t head = 0; head < nodes.size(); ++head) {
+    for (const NodeId next : open.neighbours(nodes[head])) {
+      if (local[next] >= 0) continue;
+      local[next] = 0;
+      nodes.push_back(next);
+    }
+  }
+  if (nodes.size() > kExactMaxNodes) return;
+  std::sort(nodes.begin(), nodes.end());
+  for (std::size_t i = 0; i < nodes.size(); ++i) local[nodes[i]] = static_cast<int>(i);
+  neighbours.resize(nodes.size());
+  if (open.weighted()) costs.assign(nodes.size(), std::vector<double>(nodes.size()));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (int k = 0; k < open.degree(nodes[i]); ++k) {
+      const int next = local[open.neighbours(nodes[i])[k]];
+      neighbours[i] |= bit(next);
+      if (open.weighted()) costs[i][next] = open.cost(nodes[i], k);
+    }
+    if (start.visited[nodes[i]]) state.visited |= bit(static_cast<int>(i));
+  }
+  state.position = local[start.position];
+}
+
+// Where every edge costs 1.
 class ExactSearch {
  public:
-  explicit ExactSearch(const SearchStart& start) {
-    const World& world = *start.world;
-    std::vector<NodeId> reached = {start.position};
-    std::vector<int> local(world.graph().node_count(), -1);
-    local[start.position] = 0;
-    for (std::size_t head = 0; head < reached.size(); ++head) {
-      for (const NodeId next : world.open_neighbours(reached[head])) {
-        if (local[next] < 0) {
-          local[next] = 0;
-          reached.push_back(next);
-        }
-      }
-    }
-    std::sort(reached.begin(), reached.end());
-    nodes_ = reached;
-    fits_ = nodes_.size() <= kExactMaxNodes;
-    if (!fits_) return;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) local[nodes_[i]] = static_cast<int>(i);
-    neighbours_.resize(nodes_.size());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      for (const NodeId next : world.open_neighbours(nodes_[i])) neighbours_[i] |= bit(local[next]);
-      if (start.visited[nodes_[i]]) start_.visited |= bit(static_cast<int>(i));
-    }
-    start_.position = local[start.position];
+  explicit ExactSearch(const SearchStart& start, Deadline deadline = {}) : deadline_(deadline) {
+    Reach reach(start);
+    nodes_ = std::move(reach.nodes);
+    neighbours_ = std::move(reach.neighbours);
+    start_ = reach.state;
+    fits_ = !neighbours_.empty();
     unvisited_ = static_cast<int>(nodes_.size()) - std::popcount(start_.visited);
-    budget_ = static_cast<int>(std::min(start.budget_left, 1e9));
+    budget_ = static_cast<int>(std::min(start.budget_left + 1e-9, 1e9));
   }
 
   std::optional<Optimum> optimum() const;
   std::optional<std::vector<NodeId>> walk();
 
  private:
+  // Whether the deadline passed; looks at the clock now and then.
+  bool late(std::size_t states) const { return states % 256 == 0 && passed(deadline_); }
+
   int gain_of(const State& state) const { return std::popcount(state.visited) - std::popcount(start_.visited); }
 
   template <typename Visit>
@@ -80,6 +107,7 @@ class ExactSearch {
   // failures; gives false, and out_of_reach_, after too many.
   bool can_reach(const State& state, int gain, int slack);
 
+  Deadline deadline_;
   std::vector<NodeId> nodes_;        // by local index
   std::vector<NodeSet> neighbours_;  // likewise
   State start_{};
@@ -120,7 +148,7 @@ std::optional<Optimum> ExactSearch::optimum() const {
       const State state = open[waste].back();
       open[waste].pop_back();
       if (!expanded.insert(state).second) continue;
-      if (expanded.size() > kExactMaxStates) return std::nullopt;
+      if (expanded.size() > kExactMaxStates || late(expanded.size())) return std::nullopt;
       const int gain = gain_of(state);
       if (gain > best.gain) best = {.gain = gain, .waste = waste};
       for_first_visits(state, budget_ - gain - waste, [&](int node, int distance) {
@@ -144,7 +172,7 @@ bool ExactSearch::can_reach(const State& state, int gain, int slack) {
   });
   if (reached || out_of_reach_) return reached;
   failed_slack_[state] = slack;
-  out_of_reach_ = failed_slack_.size() > kExactMaxStates;
+  out_of_reach_ = failed_slack_.size() > kExactMaxStates || late(failed_slack_.size());
   return false;
 }
 
@@ -173,55 +201,187 @@ std::optional<std::vector<NodeId>> ExactSearch::walk() {
   return walk;
 }
 
-}  // namespace
+// Where edges have costs. States are expanded in order of what they can reach at most: the nodes visited, and as many
+// of the others as their cheapest arrivals allow.
+class WeightedSearch {
+ public:
+  explicit WeightedSearch(const SearchStart& start, Deadline deadline = {})
+      : deadline_(deadline), reach_(start), budget_(start.budget_left) {
+    if (reach_.neighbours.empty()) return;
+    const int count = static_cast<int>(reach_.nodes.size());
+    for (int node = 0; node < count; ++node) {
+      double least = std::numeric_limits<double>::infinity();
+      for (int from = 0; from < count; ++from) {
+        if ((reach_.neighbours[from] & bit(node)) != 0) least = std::min(least, reach_.costs[from][node]);
+      }
+      arrivals_.emplace_back(least, node);
+    }
+    std::sort(arrivals_.begin(), arrivals_.end());
+  }
 
-SearchStart search_start(const World& world, NodeId start, double budget) {
-  SearchStart result{.world = &world, .position = start, .visited = {}, .budget_left = budget};
-  result.visited.resize(world.graph().node_count());
-  result.visited[start] = true;
-  return result;
+  std::optional<std::vector<NodeId>> walk();
+
+ private:
+  struct Entry {
+    State state;
+    double spent;
+    int gain;
+    int most;    // first visits in all, at most
+    int before;  // the entry it was reached from
+  };
+
+  int most_from(const State& state, int gain, double spent) const {
+    for (const auto& [cost, node] : arrivals_) {
+      if ((state.visited & bit(node)) != 0) continue;
+      spent += cost;
+      if (!affordable(spent, budget_)) break;
+      ++gain;
+    }
+    return gain;
+  }
+
+  // The order of the heap: the most first, then the deepest, then the cheapest.
+  static bool comes_later(const Entry& a, const Entry& b) {
+    if (a.most != b.most) return a.most < b.most;
+    return a.gain != b.gain ? a.gain < b.gain : a.spent > b.spent;
+  }
+
+  void expand(int index);
+  std::vector<NodeId> unroll(int index) const;
+
+  Deadline deadline_;
+  Reach reach_;
+  double budget_;
+  std::vector<std::pair<double, int>> arrivals_;  // the cheapest edge into each node, cheapest first
+  std::vector<Entry> entries_;
+  std::vector<int> heap_;
+  std::unordered_map<State, double, StateHash> least_spent_;
+};
+
+// Ways to all nodes through visited ground from one of them: Dijkstra's algorithm without a heap, for few nodes.
+struct Ways {
+  std::array<double, kExactMaxNodes> cost;
+  std::array<int, kExactMaxNodes> before;
+};
+
+Ways ways_from(const Reach& reach, const State& state) {
+  Ways ways;
+  ways.cost.fill(std::numeric_limits<double>::infinity());
+  ways.cost[state.position] = 0;
+  ways.before[state.position] = state.position;
+  NodeSet settled = 0;
+  for (;;) {
+    int node = -1;
+    for (NodeSet rest = state.visited & ~settled; rest != 0; rest &= rest - 1) {
+      const int other = std::countr_zero(rest);
+      if (node < 0 || ways.cost[other] < ways.cost[node]) node = other;
+    }
+    if (node < 0 || ways.cost[node] == std::numeric_limits<double>::infinity()) return ways;
+    settled |= bit(node);
+    for (NodeSet next = reach.neighbours[node] & ~settled; next != 0; next &= next - 1) {
+      const int other = std::countr_zero(next);
+      const double cost = ways.cost[node] + reach.costs[node][other];
+      if (cost >= ways.cost[other]) continue;
+      ways.cost[other] = cost;
+      ways.before[other] = node;
+    }
+  }
 }
 
+void WeightedSearch::expand(int index) {
+  const Entry from = entries_[index];
+  const Ways ways = ways_from(reach_, from.state);
+  for (int node = 0; node < std::ssize(reach_.nodes); ++node) {
+    if ((from.state.visited & bit(node)) != 0 || !affordable(from.spent + ways.cost[node], budget_)) continue;
+    Entry entry{.state = {from.state.visited | bit(node), node},
+                .spent = from.spent + ways.cost[node],
+                .gain = from.gain + 1,
+                .most = 0,
+                .before = index};
+    const auto [known, fresh] = least_spent_.try_emplace(entry.state, entry.spent);
+    if (!fresh && known->second <= entry.spent) continue;
+    known->second = entry.spent;
+    entry.most = most_from(entry.state, entry.gain, entry.spent);
+    heap_.push_back(static_cast<int>(entries_.size()));
+    entries_.push_back(entry);
+    std::push_heap(heap_.begin(), heap_.end(), [&](int a, int b) { return comes_later(entries_[a], entries_[b]); });
+  }
+}
+
+std::optional<std::vector<NodeId>> WeightedSearch::walk() {
+  if (reach_.neighbours.empty()) return std::nullopt;
+  entries_ = {{.state = reach_.state, .spent = 0, .gain = 0, .most = most_from(reach_.state, 0, 0), .before = -1}};
+  heap_ = {0};
+  int best = 0;
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end(), [&](int a, int b) { return comes_later(entries_[a], entries_[b]); });
+    const int index = heap_.back();
+    heap_.pop_back();
+    const Entry& entry = entries_[index];
+    const auto beats = [&](int gain) {
+      return gain > entries_[best].gain || (gain == entries_[best].gain && entry.spent < entries_[best].spent);
+    };
+    if (entry.most < entries_[best].gain) break;  // nothing left in the heap can have more
+    const auto known = least_spent_.find(entry.state);
+    if (known != least_spent_.end() && known->second < entry.spent) continue;
+    if (beats(entry.gain)) best = index;
+    if (!beats(entry.most)) continue;
+    expand(index);
+    if (entries_.size() > kExactMaxStates || passed(deadline_)) return std::nullopt;
+  }
+  return unroll(best);
+}
+
+std::vector<NodeId> WeightedSearch::unroll(int index) const {
+  std::vector<int> chain;
+  for (; index > 0; index = entries_[index].before) chain.push_back(index);
+  std::reverse(chain.begin(), chain.end());
+  std::vector<NodeId> walk = {reach_.nodes[reach_.state.position]};
+  for (const int next : chain) {
+    const Entry& from = entries_[entries_[next].before];
+    const Ways ways = ways_from(reach_, from.state);
+    std::vector<NodeId> steps;
+    for (int node = entries_[next].state.position; node != from.state.position; node = ways.before[node]) {
+      steps.push_back(reach_.nodes[node]);
+    }
+    walk.insert(walk.end(), steps.rbegin(), steps.rend());
+  }
+  return walk;
+}
+
+}  // namespace
+
 std::optional<int> exact_gain(const SearchStart& start) {
+  if (start.world->open().weighted()) {
+    const auto walk = WeightedSearch(start).walk();
+    if (!walk) return std::nullopt;
+    std::vector<bool> visited = start.visited;
+    int gain = 0;
+    for (const NodeId node : *walk) {
+      gain += !visited[node];
+      visited[node] = true;
+    }
+    return gain;
+  }
   const auto best = ExactSearch(start).optimum();
   return best ? std::optional(best->gain) : std::nullopt;
 }
 
-std::optional<std::vector<NodeId>> exact_walk(const SearchStart& start) {
-  return ExactSearch(start).walk();
+std::optional<std::vector<NodeId>> exact_walk(const SearchStart& start, Deadline deadline) {
+  return start.world->open().weighted() ? WeightedSearch(start, deadline).walk() : ExactSearch(start, deadline).walk();
 }
 
-int ExactPolicy::act_on(const Observation& observation) {
-  const World& world = *observation.world;
-  const auto steps = static_cast<std::ptrdiff_t>(observation.walk.size()) - 1;
-  const NodeId start = observation.walk.front();
-  const double budget = observation.budget_left + static_cast<double>(steps);
-  const auto plan = [&](const SearchStart& from) {
-    auto walk = exact_walk(from);
-    if (!walk) {
-      throw SearchOutOfReach(
-          {.what = "exact search is out of reach",
-           .expected = fmt::format("at most {} nodes in reach and {} states", kExactMaxNodes, kExactMaxStates),
-           .got = fmt::format("{} valid nodes", world.valid_count()),
-           .where = world.name()});
-    }
-    return *std::move(walk);
-  };
-  auto known = walks_.find({&world, start, budget});
-  if (known == walks_.end()) {
-    known = walks_.emplace(std::tuple(&world, start, budget), plan(search_start(world, start, budget))).first;
-  }
-  const std::vector<NodeId>& walk = known->second;
-  const bool on_plan =
-      steps < std::ssize(walk) && std::equal(observation.walk.begin(), observation.walk.end(), walk.begin());
-  if (on_plan) return steps + 1 < std::ssize(walk) ? observation.action_to(walk[steps + 1]) : kStop;
-
-  // Someone else led the way here: plan from this state.
-  SearchStart here{
-      .world = &world, .position = observation.position, .visited = {}, .budget_left = observation.budget_left};
-  for (const std::uint32_t visits : observation.visits) here.visited.push_back(visits > 0);
-  const std::vector<NodeId> rest = plan(here);
-  return rest.size() < 2 ? kStop : observation.action_to(rest[1]);
+Plan ExactPolicy::plan(const SearchStart& start) {
+  const Deadline deadline = deadline_after(limit_);
+  Plan plan;
+  if (limit_) plan = BeamPolicy({}).plan(start);
+  if (auto walk = exact_walk(start, deadline)) return {.walk = *std::move(walk), .optimal = true};
+  if (limit_) return plan;
+  throw SearchOutOfReach(
+      {.what = "exact search is out of reach",
+       .expected = fmt::format("at most {} nodes in reach and {} states", kExactMaxNodes, kExactMaxStates),
+       .got = fmt::format("{} valid nodes", start.world->valid_count()),
+       .where = start.world->name()});
 }
 
 }  // namespace graphdrl

@@ -7,14 +7,11 @@
 // lexicographically first.
 #pragma once
 
-#include <map>
 #include <optional>
-#include <span>
-#include <tuple>
 #include <vector>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/planners/baselines.h"
+#include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
 
@@ -26,30 +23,23 @@ class SearchOutOfReach : public Error {
   using Error::Error;
 };
 
-// Where a search begins. `visited`: a value per node, the start's among them.
-struct SearchStart {
-  const World* world;
-  NodeId position;
-  std::vector<bool> visited;
-  double budget_left;  // steps
-};
-
-SearchStart search_start(const World& world, NodeId start, double budget);
-
 // How many nodes an optimal walk visits on top of those already visited. Empty where the search is out of reach: too
 // many nodes or too many states, never too much time, so that the answer is the same everywhere.
 std::optional<int> exact_gain(const SearchStart& start);
 
-// The optimal walk, `position` first. Empty where out of reach.
-std::optional<std::vector<NodeId>> exact_walk(const SearchStart& start);
+// The optimal walk, `position` first. Empty where out of reach or past the deadline.
+std::optional<std::vector<NodeId>> exact_walk(const SearchStart& start, Deadline deadline = {});
 
-// Follows the exact walk and stops at its end. Throws SearchOutOfReach.
-class ExactPolicy final : public SingleEpisodePolicy {
+// Throws SearchOutOfReach. With a time limit it first plans by a beam, and gives that walk where the search is out of
+// reach or the time up.
+class ExactPolicy final : public PlanPolicy {
+ public:
+  explicit ExactPolicy(TimeLimit limit = {}) : limit_(limit) {}
+
+  Plan plan(const SearchStart& start) override;
+
  private:
-  int act_on(const Observation& observation) override;
-
-  // Whole walks, by world, start and budget.
-  std::map<std::tuple<const World*, NodeId, double>, std::vector<NodeId>> walks_;
+  TimeLimit limit_;
 };
 
 }  // namespace graphdrl

@@ -7,14 +7,16 @@
 #include <vector>
 
 #include "graphdrl/env/policy.h"
+#include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
 
-// `random`, `random-walk`, `dfs`, `nearest`, `exact`, or a policy file. Throws Error on any other name and on a file
-// that holds no policy.
-std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed);
+// `random`, `random-walk`, `dfs`, `nearest`, `beam` or `beam:W`, `exact`, or a policy file. The time limit holds for
+// each plan of a beam or an exact search. Throws Error on any other name, on a file that holds no policy, and on a time
+// limit for a policy that plans nothing.
+std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, TimeLimit limit = {});
 
-// "dfs, exact, nearest, random, random-walk or a policy file", for help and errors.
+// "beam[:W], dfs, exact, nearest, random, random-walk or a policy file", for help and errors.
 std::string policy_names();
 
 // What a policy is called in a table: the name given, a file's stem.

@@ -70,7 +70,7 @@ void validate(const TrainOptions& options) {
 }
 
 EpisodeOptions episode_options(const TrainOptions& options, const World& world) {
-  return {.budget = Budget::parse(options.budget).steps_in(world),
+  return {.budget = Budget::parse(options.budget).cost_in(world),
           .action_space = ActionSpace::kDirections,
           .reward = options.reward == "coverage_gain" ? RewardKind::kCoverageGain : RewardKind::kVisitPenalty,
           .end_at_full_coverage = options.end_at_full_coverage,

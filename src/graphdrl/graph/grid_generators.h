@@ -1,0 +1,25 @@
+// Random grid maps. The same random numbers give the same map.
+#pragma once
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/graph/grid_map.h"
+
+namespace graphdrl {
+
+// Each cell an obstacle with probability `obstacles`; only the largest connected part stays free.
+GridMap random_obstacles_map(int rows, int cols, double obstacles, Rng& rng);
+
+// A perfect maze, corridors one cell wide: rooms on the cells of even row and column, exactly one way between any two;
+// then each inner wall cell between two rooms that is left opens with probability `loops`. Rows and columns are odd.
+GridMap maze_map(int rows, int cols, double loops, Rng& rng);
+
+// As maze_map without loops, then each dead end is joined to another neighbouring room with probability `braid`.
+GridMap braided_maze_map(int rows, int cols, double braid, Rng& rng);
+
+// Rectangular rooms of 2 to max_room cells a side, joined by corridors one cell wide into one connected map.
+GridMap rooms_map(int rows, int cols, int max_room, Rng& rng);
+
+// The same map with everything but its largest connected part blocked; the part met first among equals.
+GridMap largest_component(const GridMap& map);
+
+}  // namespace graphdrl

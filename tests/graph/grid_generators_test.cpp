@@ -1,0 +1,85 @@
+#include "graphdrl/graph/grid_generators.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "graphdrl/graph/search.h"
+
+namespace graphdrl {
+namespace {
+
+int free_cells(const GridMap& map) {
+  return static_cast<int>(std::count(map.blocked.begin(), map.blocked.end(), false));
+}
+
+std::int64_t free_edges(const GridMap& map) {
+  return Graph::grid(map.rows, map.cols).without(map.blocked).edge_count();
+}
+
+int parts(const GridMap& map) {
+  return count_components(Graph::grid(map.rows, map.cols), map.blocked);
+}
+
+int dead_ends(const GridMap& map) {
+  const Graph open = Graph::grid(map.rows, map.cols).without(map.blocked);
+  int count = 0;
+  for (NodeId node = 0; node < open.node_count(); ++node) count += open.degree(node) == 1;
+  return count;
+}
+
+TEST(GridGenerators, MazesWithoutLoopsAreTreesOfAllRooms) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng rng(seed);
+    const GridMap map = maze_map(11, 7, 0, rng);
+    EXPECT_EQ(free_cells(map), 6 * 4 + 6 * 4 - 1);
+    EXPECT_EQ(free_edges(map), free_cells(map) - 1);
+    EXPECT_EQ(parts(map), 1);
+  }
+}
+
+TEST(GridGenerators, LoopsAndBraidsOpenWalls) {
+  Rng rng(1);
+  const GridMap all = maze_map(11, 11, 1, rng);
+  EXPECT_EQ(free_cells(all), 36 + 60) << "every wall between two rooms";
+  EXPECT_EQ(parts(all), 1);
+  int perfect_ends = 0;
+  int braided_ends = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng one(seed);
+    Rng same(seed);
+    perfect_ends += dead_ends(maze_map(11, 11, 0, one));
+    const GridMap braided = braided_maze_map(11, 11, 1, same);
+    braided_ends += dead_ends(braided);
+    EXPECT_EQ(parts(braided), 1);
+  }
+  EXPECT_EQ(braided_ends, 0);
+  EXPECT_GT(perfect_ends, 40);
+}
+
+TEST(GridGenerators, ObstaclesLeaveOnePart) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng rng(seed);
+    const GridMap map = random_obstacles_map(5, 8, 0.4, rng);
+    EXPECT_EQ(parts(map), free_cells(map) > 0 ? 1 : 0);
+  }
+  Rng rng(1);
+  EXPECT_EQ(free_cells(random_obstacles_map(5, 8, 0, rng)), 40);
+  EXPECT_EQ(free_cells(random_obstacles_map(5, 8, 1, rng)), 0);
+  const GridMap map{.rows = 1, .cols = 5, .blocked = {false, true, false, false, true}};
+  EXPECT_EQ(largest_component(map).blocked, (std::vector<bool>{true, true, false, false, true}));
+}
+
+TEST(GridGenerators, RoomsAreConnectedAndRepeatable) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng rng(seed);
+    Rng same(seed);
+    const GridMap map = rooms_map(12, 15, 4, rng);
+    EXPECT_EQ(parts(map), 1);
+    EXPECT_LT(free_cells(map), 12 * 15);
+    EXPECT_EQ(map.blocked, rooms_map(12, 15, 4, same).blocked);
+  }
+}
+
+}  // namespace
+}  // namespace graphdrl

@@ -1,0 +1,162 @@
+// Plans, optima and bounds against brute force, on thousands of small random worlds of every kind.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <queue>
+
+#include "graphdrl/env/walk.h"
+#include "graphdrl/eval/rollout.h"
+#include "graphdrl/planners/beam.h"
+#include "graphdrl/planners/bound.h"
+#include "graphdrl/planners/exact.h"
+#include "graphdrl/planners/registry.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+struct Case {
+  World world;
+  NodeId start;
+  double budget;
+};
+
+// Sparse and dense, undirected and directed, with and without costs and blocked nodes, connected or not.
+Case random_case(Rng& rng) {
+  const auto nodes = static_cast<NodeId>(1 + rng.below(8));
+  const bool directed = rng.below(2) == 0;
+  const bool weighted = rng.below(2) == 0;
+  const auto edge_count = rng.below(static_cast<std::uint32_t>(2 * nodes));
+  std::vector<Edge> edges;
+  for (std::uint32_t i = 0; i < edge_count; ++i) {
+    const auto end = [&] { return static_cast<NodeId>(rng.below(static_cast<std::uint32_t>(nodes))); };
+    edges.push_back({end(), end(), weighted ? 0.25 * (1 + rng.below(12)) : 1.0});
+  }
+  std::vector<bool> blocked(nodes);
+  for (NodeId node = 1; node < nodes; ++node) blocked[node] = rng.below(6) == 0;
+  World world("random", Graph::from_edges(nodes, edges, directed ? EdgeKind::kDirected : EdgeKind::kUndirected),
+              blocked);
+  const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
+  return {std::move(world), start, 0.5 * rng.below(28)};
+}
+
+struct Optimum {
+  int visited;
+  double cost;  // of the cheapest walk that visits so many
+};
+
+// The least cost of every pair of visited set and position, step by step.
+Optimum brute_force(const Case& c) {
+  using Key = std::pair<unsigned, NodeId>;
+  std::map<Key, double> least;
+  std::priority_queue<std::pair<double, Key>, std::vector<std::pair<double, Key>>, std::greater<>> queue;
+  queue.push({0, {1U << c.start, c.start}});
+  Optimum best{.visited = 0, .cost = 0};
+  while (!queue.empty()) {
+    const auto [cost, key] = queue.top();
+    queue.pop();
+    if (!least.try_emplace(key, cost).second) continue;
+    const int visited = std::popcount(key.first);
+    if (visited > best.visited) best = {visited, cost};
+    const Graph& graph = c.world.graph();
+    for (int i = 0; i < graph.degree(key.second); ++i) {
+      const NodeId next = graph.neighbours(key.second)[i];
+      const double after = cost + graph.cost(key.second, i);
+      if (!c.world.is_blocked(next) && after <= c.budget) queue.push({after, {key.first | 1U << next, next}});
+    }
+  }
+  return best;
+}
+
+TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
+  Rng rng(11);
+  int tight = 0;
+  constexpr int kCases = 10'000;
+  for (int i = 0; i < kCases; ++i) {
+    SCOPED_TRACE(i);
+    const Case c = random_case(rng);
+    const SearchStart start = search_start(c.world, c.start, c.budget);
+    const Optimum optimum = brute_force(c);
+    const int most = max_visited(start);
+    ASSERT_GE(most, optimum.visited);
+    tight += most == optimum.visited;
+
+    const auto follow = [&](const std::vector<NodeId>& walk) {
+      Episode episode(c.world, {.budget = c.budget, .action_space = ActionSpace::kNeighbours});
+      follow_walk(episode, walk);  // throws where a step is no edge or cannot be paid for
+      return Optimum{episode.visited_count(), episode.spent()};
+    };
+    const auto exact = exact_walk(start);
+    ASSERT_TRUE(exact);
+    const Optimum found = follow(*exact);
+    ASSERT_EQ(found.visited, optimum.visited);
+    ASSERT_NEAR(found.cost, optimum.cost, 1e-9);
+    ASSERT_EQ(exact_gain(start), optimum.visited - 1);
+    for (const int width : {1, 3}) ASSERT_LE(follow(beam_walk(start, {.width = width})).visited, optimum.visited);
+    const Optimum all = follow(beam_walk(start, {.width = 1000}));  // no partial walk is dropped
+    ASSERT_EQ(all.visited, optimum.visited);
+    ASSERT_NEAR(all.cost, optimum.cost, 1e-9);
+    for (const char* const name : {"random", "random-walk", "dfs", "nearest", "beam:2", "exact"}) {
+      const auto policy = make_policy(name, 1);
+      const EpisodeOptions options{.budget = c.budget, .action_space = ActionSpace::kNeighbours};
+      const RolloutResult result = roll_out(c.world, std::span(&c.start, 1), options, *policy).front();
+      ASSERT_LE(follow(result.walk).visited, optimum.visited) << name;
+    }
+  }
+  EXPECT_GT(tight, kCases * 9 / 10) << "the bound is loose";
+}
+
+TEST(Optimality, PlansGoOnFromWhereSomeoneElseLed) {
+  Rng rng(12);
+  for (int i = 0; i < 500; ++i) {
+    const Case c = random_case(rng);
+    SearchStart start = search_start(c.world, c.start, c.budget);
+    for (const NodeId node : c.world.valid_nodes()) {
+      if (rng.below(3) == 0) start.visited[node] = true;
+    }
+    const auto exact = exact_walk(start);
+    ASSERT_TRUE(exact);
+    ASSERT_GE(max_visited(start), visited_after(start, *exact));
+    ASSERT_LE(visited_after(start, beam_walk(start, {})), visited_after(start, *exact));
+    ASSERT_LE(walk_cost(c.world, *exact), c.budget + 1e-9);
+  }
+}
+
+TEST(Bound, IsWorkedOutByHand) {
+  // A star of four leaves: each leaf but the last is paid twice.
+  const std::vector<Edge> star = {{0, 1}, {0, 2}, {0, 3}, {0, 4}};
+  const World world("star", Graph::from_edges(5, star), std::vector<bool>(5));
+  const auto bound = [&](NodeId start, double budget) { return max_visited(search_start(world, start, budget)); };
+  EXPECT_EQ(bound(0, 0), 1);
+  EXPECT_EQ(bound(0, 3), 3);
+  EXPECT_EQ(bound(0, 6), 4);
+  EXPECT_EQ(bound(0, 7), 5);
+  EXPECT_EQ(bound(1, 6), 5);
+  EXPECT_EQ(bound(1, 5), 4);
+  // A one-way street of three nodes with a side street at the start: what was left is lost.
+  const std::vector<Edge> street = {{0, 1}, {1, 2}, {0, 3}};
+  const World one_way("street", Graph::from_edges(4, street, EdgeKind::kDirected), std::vector<bool>(4));
+  EXPECT_EQ(max_visited(search_start(one_way, 0, 100)), 3);
+  EXPECT_EQ(max_visited(search_start(one_way, 2, 100)), 1);
+  // A checkerboard's colours alternate: from a minority cell of a row of three, both ends cannot be had in one step
+  // each.
+  const World row = grid_world("...\n");
+  EXPECT_EQ(max_visited(search_start(row, 1, 2)), 2);
+  EXPECT_EQ(max_visited(search_start(row, 0, 2)), 3);
+}
+
+TEST(Beam, WidensUntilTheTimeIsUp) {
+  const World world = grid_world("..#..\n.....\n#.#.#\n.....\n..#..\n");
+  const SearchStart start = search_start(world, 0, 20);
+  const Plan narrow = BeamPolicy({.width = 1}).plan(start);
+  const Plan wide = BeamPolicy({.width = 1}, std::chrono::seconds(5)).plan(start);
+  EXPECT_GE(visited_after(start, wide.walk), visited_after(start, narrow.walk));
+  const Plan exact = ExactPolicy(std::chrono::seconds(60)).plan(start);
+  EXPECT_TRUE(exact.optimal);
+  EXPECT_GE(visited_after(start, exact.walk), visited_after(start, wide.walk));
+  const Plan hurried = ExactPolicy(std::chrono::seconds(0)).plan(start);
+  EXPECT_GE(visited_after(start, hurried.walk), visited_after(start, narrow.walk));
+}
+
+}  // namespace
+}  // namespace graphdrl
