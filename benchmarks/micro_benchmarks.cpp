@@ -1,6 +1,6 @@
 // What single parts cost, and how that grows with nodes, degree, batch and threads; the tables of docs/performance.md.
 //   build/release/bin/micro_benchmarks --benchmark_filter=LearningStep
-// Each case first holds its result against an independent one and reports an error where they differ.
+// Each case holds its result against an independent one and reports an error where they differ.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -9,9 +9,11 @@
 
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/episode.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/graph/grid_map.h"
 #include "graphdrl/nn/features.h"
 #include "graphdrl/nn/gemm.h"
+#include "graphdrl/planners/network_policy.h"
 #include "graphdrl/train/composed_network.h"
 #include "graphdrl/train/device_learner.h"
 #include "graphdrl/train/kernel_learner.h"
@@ -55,7 +57,7 @@ void BM_Gemm(benchmark::State& state) {
     for (int j = 0; j < n; ++j) {
       double sum = 0;
       for (int p = 0; p < k; ++p) sum += double{op == Op::kNone ? a[i * k + p] : a[p * m + i]} * b[p * n + j];
-      if (std::abs(sum - c[i * n + j]) > 1e-4 * k) return state.SkipWithError("wrong product");
+      if (!(std::abs(sum - c[i * n + j]) <= 1e-5 * std::sqrt(k))) return state.SkipWithError("wrong product");
     }
   }
   state.counters["GFLOP/s"] =
@@ -95,11 +97,11 @@ void time_learning_step(benchmark::State& state, const LearningCase& work, int t
   DeviceLearner operators(torch::kCPU, {}, rng_of_operators);
   set_threads(threads);
   const double loss = learner.learn(work.batch, rng);
-  if (std::abs(operators.learn(work.batch, rng_of_operators) - loss) > 1e-3 * loss) {
-    return state.SkipWithError("wrong loss");
-  }
   for (auto _ : state) learner.learn(work.batch, rng);
   set_threads(1);
+  if (!(std::abs(operators.learn(work.batch, rng_of_operators) - loss) <= 1e-3 * loss)) {
+    state.SkipWithError("wrong loss");
+  }
 }
 
 void BM_LearningStepByNodes(benchmark::State& state) {
@@ -138,10 +140,36 @@ void BM_QValuesByNodes(benchmark::State& state) {
       composed_q_values(edge_index(work.batch.graphs, torch::kCPU), x, named_tensors(values));
   for (int a = 0; a < kActionCount; ++a) {
     const auto value = expected[0][a].item<float>();
-    if (std::abs(q[a] - value) > 1e-3f * (1 + std::abs(value))) return state.SkipWithError("wrong values");
+    if (!(std::abs(q[a] - value) <= 1e-3f * (1 + std::abs(value)))) return state.SkipWithError("wrong values");
   }
 }
 BENCHMARK(BM_QValuesByNodes)->ArgName("nodes")->ArgsProduct({{25, 50, 100, 200, 400, 1600, 6400}});
+
+// One move each of many episodes on the paper's map a; against moves chosen one by one.
+void BM_MovesByEpisodes(benchmark::State& state) {
+  const World world = load_one_world("paper:a");
+  Rng rng(6);
+  NetworkPolicy policy{PaperParameters(rng)};
+  std::vector<Episode> episodes(static_cast<std::size_t>(state.range(0)), Episode(world, {}));
+  for (Episode& episode : episodes) {
+    episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
+    for (int i = 0; i < 10; ++i) episode.step(static_cast<int>(rng.below(kActionCount)));
+  }
+  std::vector<Observation> observations;
+  for (const Episode& episode : episodes) observations.push_back(episode.observation());
+  std::vector<int> actions(episodes.size());
+  set_threads(2);
+  for (auto _ : state) policy.act(observations, actions);
+  set_threads(1);
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    int action = 0;
+    policy.act({&observations[i], 1}, {&action, 1});
+    if (action != actions[i]) return state.SkipWithError("wrong move");
+  }
+  state.counters["moves/s"] =
+      benchmark::Counter(static_cast<double>(state.range(0)), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(BM_MovesByEpisodes)->ArgName("episodes")->ArgsProduct({{1, 4, 16, 64, 256, 1024}})->UseRealTime();
 
 // Steps of an episode with its features kept up to date; against features built from scratch.
 void BM_StepsByNodes(benchmark::State& state) {

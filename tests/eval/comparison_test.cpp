@@ -84,7 +84,7 @@ TEST(Compare, LeavesOutWhatIsOutOfReach) {
   EXPECT_EQ(result.overall[0].maps, 1);
   EXPECT_TRUE(result.overall[0].ratio_to_optimum);
   EXPECT_FALSE(result.overall[1].ratio_to_optimum);
-  EXPECT_EQ(result.rows[2].budget_steps, 70);
+  EXPECT_EQ(result.rows[2].budget, 70);
   EXPECT_THAT(format_comparison(result), HasSubstr("–"));
 }
 

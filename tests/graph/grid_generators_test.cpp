@@ -44,17 +44,22 @@ TEST(GridGenerators, LoopsAndBraidsOpenWalls) {
   EXPECT_EQ(free_cells(all), 36 + 60) << "every wall between two rooms";
   EXPECT_EQ(parts(all), 1);
   int perfect_ends = 0;
+  int half_ends = 0;
   int braided_ends = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Rng one(seed);
     Rng same(seed);
+    Rng third(seed);
     perfect_ends += dead_ends(maze_map(11, 11, 0, one));
+    half_ends += dead_ends(braided_maze_map(11, 11, 0.5, third));
     const GridMap braided = braided_maze_map(11, 11, 1, same);
     braided_ends += dead_ends(braided);
     EXPECT_EQ(parts(braided), 1);
   }
   EXPECT_EQ(braided_ends, 0);
   EXPECT_GT(perfect_ends, 40);
+  EXPECT_GT(half_ends, perfect_ends / 5);  // some pairs of dead ends open into each other
+  EXPECT_LT(half_ends, perfect_ends * 3 / 5);
 }
 
 TEST(GridGenerators, ObstaclesLeaveOnePart) {

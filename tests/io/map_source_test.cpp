@@ -20,12 +20,13 @@ std::vector<std::string> names(const std::vector<NamedMap>& maps) {
 TEST(MapSource, HoldsThePapersTenMaps) {
   std::vector<int> valid;
   for (const NamedMap& named : load_maps("paper")) {
-    EXPECT_EQ(named.map.rows, 5);
-    EXPECT_EQ(named.map.cols, 5);
-    valid.push_back(World(named.name, named.map).valid_count());
+    const auto& map = std::get<GridMap>(named.map);
+    EXPECT_EQ(map.rows, 5);
+    EXPECT_EQ(map.cols, 5);
+    valid.push_back(World(named.name, map).valid_count());
   }
   EXPECT_THAT(valid, ElementsAre(19, 18, 18, 18, 19, 18, 17, 21, 20, 22));
-  EXPECT_EQ(format_ascii_map(load_map("paper:a").map), "...#.\n.###.\n.#...\n.#...\n.....\n");
+  EXPECT_EQ(format_ascii_map(std::get<GridMap>(load_map("paper:a").map)), "...#.\n.###.\n.#...\n.#...\n.....\n");
 }
 
 TEST(MapSource, ReadsFilesAndFolders) {

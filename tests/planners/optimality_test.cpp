@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <chrono>
+#include <map>
 #include <queue>
 
 #include "graphdrl/env/walk.h"
@@ -92,8 +94,10 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
     ASSERT_EQ(found.visited, optimum.visited);
     ASSERT_NEAR(found.cost, optimum.cost, 1e-9);
     ASSERT_EQ(exact_gain(start), optimum.visited - 1);
-    for (const int width : {1, 3}) ASSERT_LE(follow(beam_walk(start, {.width = width})).visited, optimum.visited);
-    const Optimum all = follow(beam_walk(start, {.width = 1000}));  // no partial walk is dropped
+    for (const int width : {1, 3}) ASSERT_LE(follow(beam_plan(start, {.width = width})->walk).visited, optimum.visited);
+    const auto complete = beam_plan(start, {.width = 1000});  // no partial walk is dropped
+    ASSERT_TRUE(complete->optimal);
+    const Optimum all = follow(complete->walk);
     ASSERT_EQ(all.visited, optimum.visited);
     ASSERT_NEAR(all.cost, optimum.cost, 1e-9);
     for (const char* const name : {"random", "random-walk", "dfs", "nearest", "beam:2", "exact"}) {
@@ -117,7 +121,7 @@ TEST(Optimality, PlansGoOnFromWhereSomeoneElseLed) {
     const auto exact = exact_walk(start);
     ASSERT_TRUE(exact);
     ASSERT_GE(max_visited(start), visited_after(start, *exact));
-    ASSERT_LE(visited_after(start, beam_walk(start, {})), visited_after(start, *exact));
+    ASSERT_LE(visited_after(start, beam_plan(start, {})->walk), visited_after(start, *exact));
     ASSERT_LE(walk_cost(c.world, *exact), c.budget + 1e-9);
   }
 }
@@ -138,24 +142,78 @@ TEST(Bound, IsWorkedOutByHand) {
   const World one_way("street", Graph::from_edges(4, street, EdgeKind::kDirected), std::vector<bool>(4));
   EXPECT_EQ(max_visited(search_start(one_way, 0, 100)), 3);
   EXPECT_EQ(max_visited(search_start(one_way, 2, 100)), 1);
-  // A checkerboard's colours alternate: from a minority cell of a row of three, both ends cannot be had in one step
-  // each.
-  const World row = grid_world("...\n");
-  EXPECT_EQ(max_visited(search_start(row, 1, 2)), 2);
-  EXPECT_EQ(max_visited(search_start(row, 0, 2)), 3);
+  // Two ways that meet: no walk takes both.
+  const std::vector<Edge> ways = {{0, 1}, {0, 2}, {1, 3}, {2, 3}};
+  const World meeting("ways", Graph::from_edges(4, ways, EdgeKind::kDirected), std::vector<bool>(4));
+  EXPECT_EQ(max_visited(search_start(meeting, 0, 100)), 3);
+  // A checkerboard's colours alternate: of 3 × 3 cells, eight steps from one of the four have at most eight.
+  const World board = grid_world("...\n...\n...\n");
+  EXPECT_EQ(max_visited(search_start(board, 1, 8)), 8);
+  EXPECT_EQ(max_visited(search_start(board, 0, 8)), 9);
 }
 
-TEST(Beam, WidensUntilTheTimeIsUp) {
+TEST(SpendingLimit, IsOneRuleForEpisodesSearchesAndBounds) {
+  // 1000.0000005 of 1000 is within the rounding of sums, whoever adds up; two tiny edges of nothing are not.
+  const std::vector<Edge> close = {{0, 1, 999}, {1, 2, 1.0000005}};
+  const World path("path", Graph::from_edges(3, close), std::vector<bool>(3));
+  const std::vector<Edge> tiny = {{0, 1, 1e-10}, {1, 2, 1e-10}};
+  const World atoms("atoms", Graph::from_edges(3, tiny), std::vector<bool>(3));
+  struct Expected {
+    const World* world;
+    double budget;
+    int visited;
+  };
+  for (const auto& [world, budget, visited] :
+       {Expected{&path, 1000, 3}, Expected{&path, 999.9, 2}, Expected{&atoms, 0, 1}, Expected{&atoms, 1e-10, 2}}) {
+    const SearchStart start = search_start(*world, 0, budget);
+    EXPECT_EQ(visited_after(start, *exact_walk(start)), visited);
+    EXPECT_EQ(visited_after(start, beam_plan(start, {})->walk), visited);
+    EXPECT_EQ(max_visited(start), visited);
+    Episode episode(*world, {.budget = budget, .action_space = ActionSpace::kNeighbours});
+    follow_walk(episode, *exact_walk(start));
+    EXPECT_EQ(episode.visited_count(), visited);
+  }
+}
+
+TEST(Beam, WithTimeWidensUntilNothingIsDropped) {
+  const World world = grid_world("..#..\n.....\n#.#.#\n.....\n..#..\n");
+  const auto ample = std::chrono::hours(1);
+  int improved = 0;
+  for (const NodeId node : world.valid_nodes()) {
+    const SearchStart start = search_start(world, node, 20);
+    const int optimum = 1 + *exact_gain(start);
+    const Plan narrow = BeamPolicy({.width = 1}).plan(start);
+    improved += visited_after(start, narrow.walk) < optimum;
+    const Plan wide = BeamPolicy({.width = 1}, ample).plan(start);
+    EXPECT_TRUE(wide.optimal);
+    EXPECT_EQ(visited_after(start, wide.walk), optimum);
+    const Plan exact = ExactPolicy(ample).plan(start);
+    EXPECT_TRUE(exact.optimal);
+    EXPECT_EQ(visited_after(start, exact.walk), optimum);
+  }
+  EXPECT_GT(improved, 0) << "a beam of one never goes astray here: the test shows nothing";
+}
+
+TEST(Beam, WithoutTimeKeepsItsFirstWalk) {
   const World world = grid_world("..#..\n.....\n#.#.#\n.....\n..#..\n");
   const SearchStart start = search_start(world, 0, 20);
-  const Plan narrow = BeamPolicy({.width = 1}).plan(start);
-  const Plan wide = BeamPolicy({.width = 1}, std::chrono::seconds(5)).plan(start);
-  EXPECT_GE(visited_after(start, wide.walk), visited_after(start, narrow.walk));
-  const Plan exact = ExactPolicy(std::chrono::seconds(60)).plan(start);
-  EXPECT_TRUE(exact.optimal);
-  EXPECT_GE(visited_after(start, exact.walk), visited_after(start, wide.walk));
-  const Plan hurried = ExactPolicy(std::chrono::seconds(0)).plan(start);
-  EXPECT_GE(visited_after(start, hurried.walk), visited_after(start, narrow.walk));
+  EXPECT_FALSE(beam_plan(start, {}, std::chrono::steady_clock::now()));
+  const Plan narrow = BeamPolicy({.width = 1}, std::chrono::seconds(0)).plan(start);
+  EXPECT_EQ(narrow.walk, BeamPolicy({.width = 1}).plan(start).walk);
+}
+
+TEST(Baselines, FollowOneWayStreetsAndCosts) {
+  // 0 → 1 → 2 → 0, and a side street 1 → 3 → 1.
+  const std::vector<Edge> edges = {{0, 1, 1}, {1, 2, 1}, {2, 0, 1}, {1, 3, 5}, {3, 1, 1}};
+  const World world("streets", Graph::from_edges(4, edges, EdgeKind::kDirected), std::vector<bool>(4));
+  const auto walk_of = [&](const char* name, double budget) {
+    const NodeId start = 0;
+    const EpisodeOptions options{.budget = budget, .action_space = ActionSpace::kNeighbours};
+    return roll_out(world, std::span(&start, 1), options, *make_policy(name, 1)).front().walk;
+  };
+  EXPECT_EQ(walk_of("dfs", 20), (std::vector<NodeId>{0, 1, 2, 0, 1, 3}));
+  EXPECT_EQ(walk_of("nearest", 20), (std::vector<NodeId>{0, 1, 2, 0, 1, 3}));
+  EXPECT_EQ(walk_of("nearest", 8), (std::vector<NodeId>{0, 1, 2, 0, 1})) << "the next step costs 5 of 4";
 }
 
 }  // namespace

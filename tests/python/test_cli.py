@@ -111,6 +111,10 @@ def bad_inputs(tmp_path, policy):
     (tmp_path / "config.json").write_text('{"episodes": 3, "speed": 9}')
     (tmp_path / "broken.json").write_text('{"episodes": ')
     (tmp_path / "file").write_text("")
+    graph = {"nodes": [{"id": 0}, {"id": 1}], "links": [{"source": 0, "target": 1, "weight": 2}]}
+    (tmp_path / "graph.json").write_text(json.dumps(graph))
+    graph["links"][0]["weight"] = -2
+    (tmp_path / "cost.json").write_text(json.dumps(graph))
     evaluate_nearest = ["evaluate", "--policy", "nearest"]
     return [
         ([*evaluate_nearest, "--maps", tmp_path / "strange.txt"], "strange.txt:1:3: strange character"),
@@ -138,6 +142,22 @@ def bad_inputs(tmp_path, policy):
         (["inspect", policy, "--map", "paper:a", "--walk", "3"], "start on an obstacle"),
         (["inspect", policy, "--map", "paper:a", "--walk", "0,2"], "no such step"),
         (["inspect", policy, "--map", "paper", "--walk", "0"], "expected one map, got 10"),
+        (["plan", "paper:a"], "--budget"),
+        (["plan", "paper", "--budget", "9"], "expected one map, got 10"),
+        (["plan", "paper:a", "--budget", "nan"], "bad budget"),
+        (["plan", "paper:a", "--budget", "1e9"], "too large to plan for"),
+        (["plan", "paper:a", "--budget", "9", "--start", "3"], "start on an obstacle"),
+        (["plan", "paper:a", "--budget", "9", "--start", "99"], "start outside the map"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "beam:0"], "bad beam width"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "beam:many"], "bad beam width"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "dfs", "--time-limit", "1"], "a time limit is for policies that plan"),
+        (["plan", "paper:a", "--budget", "9", "--time-limit", "-1"], "bad time limit"),
+        (["plan", "paper:a", "--budget", "9", "--time-limit", "nan"], "bad time limit"),
+        (["plan", tmp_path / "cost.json", "--budget", "9"], "links[0]: bad \"weight\""),
+        (["plan", tmp_path / "graph.json", "--budget", "9", "--policy", policy], "directions, on grid maps only"),
+        (["maps", "show", tmp_path / "graph.json"], "only grid maps can be drawn"),
+        (["train", "--maps", tmp_path / "graph.json", "--out", tmp_path / "new"], "need a grid map"),
+        (["train", "--device", "tpu", "--out", tmp_path / "new"], "--device"),
         (["maps", "show", "paper:a", "--walk", "0,25"], "no such step"),
         (["maps", "show", "paper:a", "--walk", "0,b"], "--walk"),
         (["maps", "show", "paper:a", "--svg", tmp_path / "nowhere" / "a.svg"], "cannot write the file"),
@@ -263,3 +283,56 @@ def test_bench_gives_the_documented_keys_and_one_signature(run, tmp_path):
     alone = json.loads(process.stdout)
     assert alone["signature"] == first["signature"]
     assert alone["learning_step_ms"] == {"1": None, "2": None} and alone["gemm_share"] == {"1": None, "2": None}
+
+
+def plan(run, *arguments):
+    process = run("graphdrl", "plan", *arguments, "--json")
+    assert process.returncode == 0, process.stderr
+    return json.loads(process.stdout)
+
+
+PLAN_KEYS = "map policy start budget walk walk_cells visited coverage cost upper_bound gap optimal unreachable elapsed_s".split()
+
+
+def test_plan_gives_a_walk_its_bound_and_the_documented_keys(run, trained):
+    best = plan(run, "paper:a", "--budget", "25", "--start", "0,1")
+    assert list(best) == PLAN_KEYS
+    assert best["walk"][0] == best["start"] == 1 and best["walk_cells"][0] == [0, 1]
+    assert all(abs(a - c) + abs(b - d) == 1 for (a, b), (c, d) in zip(best["walk_cells"], best["walk_cells"][1:]))
+    assert best["visited"] == len(set(best["walk"])) == 19 and best["cost"] == len(best["walk"]) - 1 <= 25
+    assert best["coverage"] == best["upper_bound"] == 100 and best["gap"] == 0 and best["optimal"]
+    for policy in ("random", "random-walk", "dfs", "nearest", "exact", "beam:1", trained[0] / "policy.safetensors"):
+        other = plan(run, "paper:g", "--budget", "1.0x", "--policy", policy)
+        assert other["coverage"] <= other["upper_bound"] and other["cost"] <= 17
+        assert other["gap"] == pytest.approx(other["upper_bound"] - other["coverage"])
+    assert plan(run, "paper:a", "--budget", "0")["walk"] == [0]
+
+
+def test_plan_takes_any_graph_and_says_what_cannot_be_reached(run, tmp_path):
+    one_way = [("dock", "a", 2.0), ("a", "b", 1.5), ("b", "dock", 1.0), ("a", "dead end", 3.0)]
+    graph = {
+        "directed": True,
+        "nodes": [{"id": name} for name in ("dock", "a", "b", "dead end", "island")] + [{"id": "wall", "blocked": True}],
+        "links": [{"source": a, "target": b, "weight": w} for a, b, w in one_way] + [{"source": "dock", "target": "wall"}],
+    }
+    (tmp_path / "plant.json").write_text(json.dumps(graph))
+    result = plan(run, tmp_path / "plant.json", "--budget", "9.5", "--start", "dock")
+    assert result["walk_labels"] == ["dock", "a", "b", "dock", "a", "dead end"]
+    assert result["cost"] == 9.5 and result["visited"] == 4 and result["optimal"] and result["unreachable"] == 1
+    short = plan(run, tmp_path / "plant.json", "--budget", "9.4", "--policy", "exact")
+    assert short["visited"] == 3 and short["walk_labels"] == ["dock", "a", "b"]
+    text = run("graphdrl", "plan", tmp_path / "plant.json", "--budget", "9.5").stdout
+    assert "dock (node 0)" in text and "1 node cannot be reached" in text and "optimal" in text
+    info = json.loads(run("graphdrl", "maps", "info", tmp_path / "plant.json", "--json").stdout)
+    assert info["directed"] and info["weighted"] and info["edges"] == 5 and info["components"] == 2
+    rows = evaluate(run, "--maps", tmp_path / "plant.json", "--budget", "9.5", "--all-starts", "--policy", "nearest", "--policy", "exact")["rows"]
+    assert rows[0]["mean"] <= rows[1]["mean"] == rows[1]["optimum"]
+
+
+def test_plan_uses_the_time_it_is_given(run, tmp_path):
+    (tmp_path / "large.txt").write_text(("." * 9 + "\n" + ".#" * 4 + ".\n") * 5)
+    quick = plan(run, tmp_path / "large.txt", "--budget", "1x", "--policy", "beam:1")
+    longer = plan(run, tmp_path / "large.txt", "--budget", "1x", "--policy", "beam:1", "--time-limit", "2")
+    assert longer["visited"] > quick["visited"] or longer["optimal"]
+    exact = plan(run, tmp_path / "large.txt", "--budget", "1x", "--policy", "exact", "--time-limit", "0.1")
+    assert exact["visited"] >= quick["visited"]

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "graphdrl/env/episode.h"
-#include "graphdrl/io/map_source.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/nn/features.h"
 #include "graphdrl/train/kernel_learner.h"
 
@@ -35,8 +35,7 @@ struct Edges {
 
 int write_probe(const std::string& out, bool double_dqn) {
   Rng rng(42);
-  std::vector<World> worlds;
-  for (const NamedMap& named : load_maps("paper")) worlds.emplace_back(named.name, named.map);
+  std::vector<World> worlds = load_worlds({"paper"});
   worlds.emplace_back("wide", GridMap{.rows = 3, .cols = 9, .blocked = std::vector<bool>(27)});
   worlds.emplace_back("large", GridMap{.rows = 11, .cols = 11, .blocked = std::vector<bool>(121)});
 

@@ -24,7 +24,7 @@ Json to_json(const Comparison& comparison) {
     json["map"] = row.map;
     json["policy"] = row.policy;
     json["valid_nodes"] = row.valid_nodes;
-    json["budget"] = row.budget_steps;
+    json["budget"] = row.budget;
     json["episodes"] = row.episodes;
     const auto coverage = row.coverage;
     json["mean"] = coverage ? Json(coverage->mean) : Json();

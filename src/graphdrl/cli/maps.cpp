@@ -28,8 +28,8 @@ void show_info(const MapsOptions& options) {
     maps.push_back({{"map", world.name()},
                     {"nodes", world.graph().node_count()},
                     {"edges", world.graph().edge_count()},
-                    {"directed", false},
-                    {"weighted", false},
+                    {"directed", world.graph().directed()},
+                    {"weighted", world.graph().weighted()},
                     {"valid_nodes", world.valid_count()},
                     {"components", components},
                     {"connected", components == 1}});
@@ -39,10 +39,11 @@ void show_info(const MapsOptions& options) {
     return;
   }
   for (const Json& map : maps) {
-    print_text(fmt::format("{}: {} nodes, {} edges, {} valid nodes in {} connected component{}\n",
-                           map["map"].get<std::string>(), map["nodes"].get<int>(), map["edges"].get<int>(),
-                           map["valid_nodes"].get<int>(), map["components"].get<int>(),
-                           map["connected"].get<bool>() ? "" : "s"));
+    print_text(fmt::format(
+        "{}: {} nodes, {}{}{} edges, {} valid nodes in {} connected component{}\n", map["map"].get<std::string>(),
+        map["nodes"].get<int>(), map["directed"].get<bool>() ? "directed " : "",
+        map["weighted"].get<bool>() ? "weighted " : "", map["edges"].get<int>(), map["valid_nodes"].get<int>(),
+        map["components"].get<int>(), map["connected"].get<bool>() ? "" : "s"));
   }
 }
 
@@ -56,6 +57,7 @@ void show_map(const MapsOptions& options) {
   }
   std::string text;
   for (const World& world : worlds) {
+    if (!world.is_grid()) throw Error({.what = "only grid maps can be drawn", .where = world.name()});
     std::string title = fmt::format("{}: {} valid nodes", world.name(), world.valid_count());
     if (!options.walk.empty()) {
       Episode episode(world, {.budget = static_cast<double>(options.walk.size())});

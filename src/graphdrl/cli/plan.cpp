@@ -13,7 +13,6 @@
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/graph/search.h"
 #include "graphdrl/planners/bound.h"
-#include "graphdrl/planners/network_policy.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/report/map_drawing.h"
 
@@ -60,6 +59,7 @@ PlannedWalk make_plan(const World& world, NodeId start, double budget, const Pla
   if (options.time_limit_s) limit = std::chrono::duration<double>(*options.time_limit_s);
   const auto policy = make_policy(options.policy, options.seed, limit);
   const SearchStart from = search_start(world, start, budget);
+  const EpisodeOptions episode{.budget = budget, .action_space = action_space_of(world)};
   PlannedWalk result{};
   result.most = max_visited(from);
   if (auto* const planner = dynamic_cast<PlanPolicy*>(policy.get())) {
@@ -67,16 +67,11 @@ PlannedWalk make_plan(const World& world, NodeId start, double budget, const Pla
     result.walk = std::move(plan.walk);
     result.optimal = plan.optimal;
   } else {
-    // The paper's network names directions; every other policy moves on any graph.
-    const bool directions = dynamic_cast<NetworkPolicy*>(policy.get()) != nullptr;
-    const EpisodeOptions episode{.budget = budget,
-                                 .action_space = directions ? ActionSpace::kDirections : ActionSpace::kNeighbours};
     result.walk = roll_out(world, std::span(&start, 1), episode, *policy).front().walk;
     cut_after_last_visit(world, result.walk);
   }
   // Nothing is believed that cannot be walked.
-  const bool grid = world.is_grid();
-  Episode check(world, {.budget = budget, .action_space = grid ? ActionSpace::kDirections : ActionSpace::kNeighbours});
+  Episode check(world, episode);
   follow_walk(check, result.walk);
   result.visited = check.visited_count();
   result.cost = check.spent();
@@ -94,6 +89,7 @@ PlannedWalk make_plan(const World& world, NodeId start, double budget, const Pla
 }
 
 std::string name_of(const World& world, NodeId node) {
+  if (!world.labels().empty()) return fmt::format("{} (node {})", escaped(world.labels()[node]), node);
   if (!world.is_grid()) return fmt::format("node {}", node);
   const Cell cell = world.map()->cell(node);
   return fmt::format("node {} (row {}, column {})", node, cell.row, cell.col);
@@ -113,6 +109,10 @@ Json to_json(const World& world, const PlanOptions& options, double budget, cons
       const Cell cell = world.map()->cell(node);
       json["walk_cells"].push_back({cell.row, cell.col});
     }
+  }
+  if (!world.labels().empty()) {
+    json["walk_labels"] = Json::array();
+    for (const NodeId node : plan.walk) json["walk_labels"].push_back(world.labels()[node]);
   }
   json["visited"] = plan.visited;
   json["coverage"] = percent * plan.visited;
@@ -138,7 +138,11 @@ std::string format_plan(const World& world, const PlanOptions& options, double b
     text += fmt::format("         {} node{} cannot be reached from there\n", plan.unreachable,
                         plan.unreachable == 1 ? "" : "s");
   }
-  text += fmt::format("walk     {}\n", fmt::join(plan.walk, " "));
+  std::vector<std::string> names;
+  for (const NodeId node : plan.walk) {
+    names.push_back(world.labels().empty() ? std::to_string(node) : escaped(world.labels()[node]));
+  }
+  text += fmt::format("walk     {}\n", fmt::join(names, " "));
   if (world.is_grid()) text += "\n" + draw_map_text(world, plan.walk);
   return text;
 }
@@ -153,7 +157,10 @@ void plan(const PlanOptions& options) {
                  .got = options.budget});
   }
   if (options.time_limit_s && !(*options.time_limit_s >= 0 && *options.time_limit_s <= 1e6)) {
-    throw Error({.what = "bad time limit", .expected = "0 to 1000000 seconds", .where = "--time-limit"});
+    throw Error({.what = "bad time limit",
+                 .expected = "0 to 1000000 seconds",
+                 .got = fmt::format("{}", *options.time_limit_s),
+                 .where = "--time-limit"});
   }
   const PlannedWalk result = make_plan(world, start, budget, options);
   if (options.json) {
@@ -169,11 +176,13 @@ void add_plan_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
-  command->add_option("map", options->map, "paper:a to paper:j, or a file")->required()->type_name("MAP");
+  command->add_option("map", options->map, "paper:a to paper:j, or a file: an ASCII map, or a graph as node-link JSON")
+      ->required()
+      ->type_name("MAP");
   command->add_option("--budget", options->budget, "What the walk may cost, or a multiple of the valid nodes, as 1.1x")
       ->required()
       ->type_name("B");
-  command->add_option("--start", options->start, "A node id, or row,col; the default is the first valid node")
+  command->add_option("--start", options->start, "A node id, a label, or row,col; the default is the first valid node")
       ->check(not_empty())
       ->type_name("S");
   command->add_option("--policy", options->policy, policy_names())->type_name("P")->capture_default_str();

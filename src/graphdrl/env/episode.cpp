@@ -64,11 +64,11 @@ double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
 
 bool Episode::done() const {
   if (terminal()) return true;
-  const double left = options_.budget - spent_;
-  if (options_.action_space == ActionSpace::kDirections) return !affordable(1.0, left);
+  const double left = spending_limit(options_.budget) - spent_;
+  if (options_.action_space == ActionSpace::kDirections) return left < 1;
   const Graph& open = world_->open();
   for (int i = 0; i < open.degree(position_); ++i) {
-    if (affordable(open.cost(position_, i), left)) return false;
+    if (open.cost(position_, i) <= left) return false;
   }
   return true;
 }
@@ -80,7 +80,8 @@ Observation Episode::observation() const {
           .visits = visits_,
           .walk = walk_,
           .visited_count = visited_count_,
-          .budget_left = options_.budget - spent_};
+          .budget_left = options_.budget - spent_,
+          .spendable = spending_limit(options_.budget) - spent_};
 }
 
 }  // namespace graphdrl

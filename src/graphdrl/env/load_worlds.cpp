@@ -1,5 +1,6 @@
 #include "graphdrl/env/load_worlds.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "graphdrl/base/error.h"
@@ -15,23 +16,30 @@ int parse_index(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? value : -1;
 }
 
+World make_world(const NamedMap& named) {
+  if (const auto* const grid = std::get_if<GridMap>(&named.map)) return World(named.name, *grid);
+  const auto& map = std::get<GraphMap>(named.map);
+  return World(named.name, map.graph, map.blocked, map.labels);
+}
+
 }  // namespace
 
 std::vector<World> load_worlds(const std::vector<std::string>& sources) {
   std::vector<World> worlds;
   for (const std::string& source : sources) {
-    for (const NamedMap& named : load_maps(source)) worlds.emplace_back(named.name, named.map);
+    for (const NamedMap& named : load_maps(source)) worlds.push_back(make_world(named));
   }
   return worlds;
 }
 
 World load_one_world(const std::string& source) {
-  const NamedMap named = load_map(source);
-  return World(named.name, named.map);
+  return make_world(load_map(source));
 }
 
 NodeId parse_start(const World& world, std::string_view text) {
   NodeId node = parse_index(text);
+  const auto label = std::find(world.labels().begin(), world.labels().end(), text);
+  if (label != world.labels().end()) node = static_cast<NodeId>(label - world.labels().begin());
   const std::size_t comma = text.find(',');
   if (comma != std::string_view::npos && world.is_grid()) {
     const Cell cell{parse_index(text.substr(0, comma)), parse_index(text.substr(comma + 1))};
@@ -40,7 +48,7 @@ NodeId parse_start(const World& world, std::string_view text) {
   if (node < 0 || node >= world.graph().node_count() || world.is_blocked(node)) {
     const bool obstacle = node >= 0 && node < world.graph().node_count();
     throw Error({.what = obstacle ? "start on an obstacle" : "start outside the map",
-                 .expected = "a valid node's id, or row,col",
+                 .expected = "a valid node's id, label or row,col",
                  .got = in_quotes(text),
                  .where = world.name()});
   }

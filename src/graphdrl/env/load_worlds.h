@@ -15,7 +15,7 @@ std::vector<World> load_worlds(const std::vector<std::string>& sources);
 // The one map of a source. Throws Error where it holds more.
 World load_one_world(const std::string& source);
 
-// A start: a node id, or "row,col" on a grid. Throws Error where it is no valid node of the world.
+// A start: a node's label, a node id, or "row,col" on a grid. Throws Error where it is no valid node of the world.
 NodeId parse_start(const World& world, std::string_view text);
 
 }  // namespace graphdrl

@@ -13,14 +13,19 @@ enum class ActionSpace {
   kNeighbours,  // the a-th open neighbour of the current node; works on any graph
 };
 
+// Grids are walked in directions, as in the paper, other worlds by neighbours.
+inline ActionSpace action_space_of(const World& world) {
+  return world.is_grid() ? ActionSpace::kDirections : ActionSpace::kNeighbours;
+}
+
 inline constexpr int kNoAction = -1;
 
 // An answer of a policy that would rather end the episode than walk on.
 inline constexpr int kStop = -1;
 
-// Whether a move can be paid for; sums of costs may be off by rounding.
-inline bool affordable(double cost, double budget_left) {
-  return cost <= budget_left + 1e-9 * (1 + budget_left);
+// What may be spent of a budget in all: sums of costs may be off by rounding.
+inline double spending_limit(double budget) {
+  return budget * (1 + 1e-9);
 }
 
 // A view into an episode, valid until its next step.
@@ -32,6 +37,7 @@ struct Observation {
   std::span<const NodeId> walk;           // every position so far, the start first; a blocked move repeats its node
   int visited_count;                      // valid nodes visited
   double budget_left;                     // in units of cost
+  double spendable;                       // the same with room for the rounding of sums
 
   bool visited(NodeId node) const { return visits[node] > 0; }
   bool all_visited() const { return visited_count == world->valid_count(); }
@@ -54,7 +60,7 @@ struct Observation {
 
   // The action mask: false where a move would be blocked or costs more than is left. A blocked direction can be chosen
   // all the same; a move that cannot be paid for cannot.
-  bool legal(int action) const { return target(action) != position && affordable(cost(action), budget_left); }
+  bool legal(int action) const { return target(action) != position && cost(action) <= spendable; }
 
   // The first action that leads to `next`; for the current node, the first blocked one. kNoAction where there is none.
   int action_to(NodeId next) const;

@@ -16,8 +16,8 @@ World::World(std::string name, const GridMap& map)
   }
 }
 
-World::World(std::string name, Graph graph, std::vector<bool> blocked)
-    : name_(std::move(name)), graph_(std::move(graph)), blocked_(std::move(blocked)) {
+World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels)
+    : name_(std::move(name)), graph_(std::move(graph)), blocked_(std::move(blocked)), labels_(std::move(labels)) {
   index_nodes();
 }
 

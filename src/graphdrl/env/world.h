@@ -18,8 +18,9 @@ class World {
   // A grid: has directions and cells. Throws Error where every cell is blocked.
   World(std::string name, const GridMap& map);
 
-  // Any graph. Throws Error where every node is blocked. REQUIRES: blocked has a value per node.
-  World(std::string name, Graph graph, std::vector<bool> blocked);
+  // Any graph. Throws Error where every node is blocked. REQUIRES: blocked has a value per node, and so have the labels
+  // where there are any.
+  World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels = {});
 
   const std::string& name() const { return name_; }
   const Graph& graph() const { return graph_; }  // with its blocked nodes
@@ -27,6 +28,7 @@ class World {
   const std::vector<bool>& blocked() const { return blocked_; }
   bool is_blocked(NodeId node) const { return blocked_[node]; }
   bool is_grid() const { return map_.has_value(); }
+  const std::vector<std::string>& labels() const { return labels_; }  // what users call the nodes; mostly empty
 
   std::span<const NodeId> valid_nodes() const { return valid_nodes_; }  // ascending
   int valid_count() const { return static_cast<int>(valid_nodes_.size()); }
@@ -45,6 +47,7 @@ class World {
   Graph graph_;
   std::vector<bool> blocked_;
   std::optional<GridMap> map_;
+  std::vector<std::string> labels_;
   Graph open_;
   std::vector<NodeId> valid_nodes_;
   std::vector<std::array<NodeId, 4>> direction_targets_;

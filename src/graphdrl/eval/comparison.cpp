@@ -32,7 +32,7 @@ constexpr std::uint64_t kPolicySeeds = 2;
 // A world with what all policies share on it.
 struct Arena {
   const World* world;
-  double budget_steps;
+  double budget;
   std::vector<NodeId> starts;
   std::optional<double> optimum;  // percent
 };
@@ -44,7 +44,7 @@ std::optional<double> mean_optimum(const Arena& arena) {
   double sum = 0;
   for (const NodeId start : arena.starts) {
     if (!by_start[start]) {
-      const auto gain = exact_gain(search_start(*arena.world, start, arena.budget_steps));
+      const auto gain = exact_gain(search_start(*arena.world, start, arena.budget));
       if (!gain) return std::nullopt;
       by_start[start] = 100.0 * (1 + *gain) / nodes;
     }
@@ -56,7 +56,7 @@ std::optional<double> mean_optimum(const Arena& arena) {
 std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
-    Arena arena{.world = &world, .budget_steps = options.budget.cost_in(world), .starts = {}, .optimum = {}};
+    Arena arena{.world = &world, .budget = options.budget.cost_in(world), .starts = {}, .optimum = {}};
     const auto nodes = world.valid_nodes();
     if (options.all_starts) {
       arena.starts.assign(nodes.begin(), nodes.end());
@@ -73,9 +73,7 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
 }
 
 std::optional<Summary> measure(const Arena& arena, Policy& policy) {
-  const EpisodeOptions options{
-      .budget = arena.budget_steps,
-      .action_space = arena.world->is_grid() ? ActionSpace::kDirections : ActionSpace::kNeighbours};
+  const EpisodeOptions options{.budget = arena.budget, .action_space = action_space_of(*arena.world)};
   std::vector<double> coverages;
   try {
     for (const RolloutResult& result : roll_out(*arena.world, arena.starts, options, policy)) {
@@ -115,9 +113,9 @@ ComparisonOverall summarise_rows(const std::string& policy, std::span<const Comp
 
 }  // namespace
 
-std::optional<PaperResult> paper_result(const std::string& map, double budget_steps) {
+std::optional<PaperResult> paper_result(const std::string& map, double budget) {
   constexpr std::string_view kPrefix = "paper:";
-  if (budget_steps != kPaperBudget || map.size() != kPrefix.size() + 1 || !map.starts_with(kPrefix)) {
+  if (budget != kPaperBudget || map.size() != kPrefix.size() + 1 || !map.starts_with(kPrefix)) {
     return std::nullopt;
   }
   const int index = map.back() - 'a';
@@ -141,11 +139,11 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
       comparison.rows.push_back({.map = arena.world->name(),
                                  .policy = label,
                                  .valid_nodes = arena.world->valid_count(),
-                                 .budget_steps = arena.budget_steps,
+                                 .budget = arena.budget,
                                  .episodes = static_cast<int>(arena.starts.size()),
                                  .coverage = measure(arena, *policy),
                                  .optimum = arena.optimum,
-                                 .paper = paper_result(arena.world->name(), arena.budget_steps)});
+                                 .paper = paper_result(arena.world->name(), arena.budget)});
     }
     comparison.overall.push_back(summarise_rows(label, std::span(comparison.rows).last(arenas.size())));
   }

@@ -19,7 +19,7 @@ struct PaperResult {
 };
 
 // For a map `paper:a` … `paper:j` under a budget of 25; empty elsewhere.
-std::optional<PaperResult> paper_result(const std::string& map, double budget_steps);
+std::optional<PaperResult> paper_result(const std::string& map, double budget);
 
 struct ComparisonOptions {
   std::vector<std::string> policies;  // as make_policy takes them
@@ -36,7 +36,7 @@ struct ComparisonRow {
   std::string map;
   std::string policy;
   int valid_nodes;
-  double budget_steps;
+  double budget;
   int episodes;
   std::optional<Summary> coverage;  // empty where the policy's search is out of reach
   std::optional<double> optimum;    // mean over the same starts; empty where out of reach

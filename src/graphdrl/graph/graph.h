@@ -27,7 +27,8 @@ class Graph {
   Graph() = default;
 
   // Neighbours in ascending order. A loop is left out, for a walk never gains by it; of parallel edges the cheapest
-  // stays. Throws Error on an edge out of range and on a cost that is not positive and finite.
+  // stays. Throws Error on an edge out of range and on a cost that is not positive and finite. REQUIRES: node_count >=
+  // 0.
   static Graph from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind = EdgeKind::kUndirected);
 
   // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down; every edge costs 1.
@@ -60,7 +61,7 @@ class Graph {
   std::vector<Edge> edges() const;
 
  private:
-  // Goes on with the next node, whose neighbours were just added; costs_ has a value for each of them by then.
+  // Goes on with the next node: the neighbours of this one, and their costs where there are any, were just added.
   void close_node() { offsets_.push_back(std::ssize(neighbours_)); }
   void forget_unit_costs();
 

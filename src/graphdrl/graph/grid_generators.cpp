@@ -85,7 +85,7 @@ GridMap largest_component(const GridMap& map) {
   }
   const auto largest = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   GridMap result = map;
-  for (std::size_t i = 0; i < part.size(); ++i) result.blocked[i] = part[i] != largest || sizes.empty();
+  for (std::size_t i = 0; i < part.size(); ++i) result.blocked[i] = part[i] != largest;
   return result;
 }
 
@@ -105,9 +105,18 @@ GridMap maze_map(int rows, int cols, double loops, Rng& rng) {
 
 GridMap braided_maze_map(int rows, int cols, double braid, Rng& rng) {
   GridMap map = blocked_map(rows, cols);
-  for (const Wall& wall : carve_maze(map, rng)) {
-    const bool dead_end = open_sides(map, wall.one) == 1 || open_sides(map, wall.other) == 1;
-    if (dead_end && rng.uniform() < braid) map.blocked[map.node(wall.cell)] = false;
+  const std::vector<Wall> walls = carve_maze(map, rng);
+  for (int row = 0; row < rows; row += 2) {
+    for (int col = 0; col < cols; col += 2) {
+      const Cell room{row, col};
+      if (open_sides(map, room) != 1 || !(rng.uniform() < braid)) continue;
+      std::vector<Cell> closed;
+      for (const Wall& wall : walls) {
+        if ((wall.one == room || wall.other == room) && map.blocked[map.node(wall.cell)]) closed.push_back(wall.cell);
+      }
+      if (closed.empty()) continue;
+      map.blocked[map.node(closed[rng.below(static_cast<std::uint32_t>(closed.size()))])] = false;
+    }
   }
   return map;
 }

@@ -1,4 +1,5 @@
-// Random grid maps. The same random numbers give the same map.
+// Random grid maps. The same random numbers give the same map. REQUIRES everywhere: rows, cols >= 1, rows * cols fits a
+// NodeId, shares from 0 to 1.
 #pragma once
 
 #include "graphdrl/base/random.h"
@@ -10,13 +11,16 @@ namespace graphdrl {
 GridMap random_obstacles_map(int rows, int cols, double obstacles, Rng& rng);
 
 // A perfect maze, corridors one cell wide: rooms on the cells of even row and column, exactly one way between any two;
-// then each inner wall cell between two rooms that is left opens with probability `loops`. Rows and columns are odd.
+// then each inner wall cell between two rooms that is left opens with probability `loops`. REQUIRES: rows and cols are
+// odd.
 GridMap maze_map(int rows, int cols, double loops, Rng& rng);
 
-// As maze_map without loops, then each dead end is joined to another neighbouring room with probability `braid`.
+// As maze_map without loops, then each room that is a dead end is opened to another neighbouring room with probability
+// `braid`.
 GridMap braided_maze_map(int rows, int cols, double braid, Rng& rng);
 
 // Rectangular rooms of 2 to max_room cells a side, joined by corridors one cell wide into one connected map.
+// REQUIRES: max_room, rows, cols >= 2.
 GridMap rooms_map(int rows, int cols, int max_room, Rng& rng);
 
 // The same map with everything but its largest connected part blocked; the part met first among equals.

@@ -3,6 +3,7 @@
 namespace graphdrl {
 
 int count_components(const Graph& graph, const std::vector<bool>& blocked) {
+  const Graph back = graph.reversed();
   std::vector<bool> seen = blocked;
   int components = 0;
   std::vector<NodeId> stack;
@@ -14,10 +15,12 @@ int count_components(const Graph& graph, const std::vector<bool>& blocked) {
     while (!stack.empty()) {
       const NodeId node = stack.back();
       stack.pop_back();
-      for (const NodeId next : graph.neighbours(node)) {
-        if (seen[next]) continue;
-        seen[next] = true;
-        stack.push_back(next);
+      for (const Graph* const edges : {&graph, &back}) {
+        for (const NodeId next : edges->neighbours(node)) {
+          if (seen[next]) continue;
+          seen[next] = true;
+          stack.push_back(next);
+        }
       }
     }
   }

@@ -113,7 +113,8 @@ std::vector<NodeId> path_to_nearest(const Graph& graph, NodeId from, const IsGoa
   return goal == kNoNode ? std::vector<NodeId>() : search.path_to(goal);
 }
 
-// How many connected components the nodes that are not blocked fall into. REQUIRES: blocked has a value per node.
+// How many connected components the nodes that are not blocked fall into, whichever way edges lead. REQUIRES: blocked
+// has a value per node.
 int count_components(const Graph& graph, const std::vector<bool>& blocked);
 
 }  // namespace graphdrl

@@ -18,7 +18,12 @@ NamedMap paper_map(char letter) {
 }
 
 NamedMap file_map(const std::filesystem::path& path) {
-  return {path.stem().string(), parse_ascii_map(read_file(path), path.string())};
+  const std::string text = read_file(path);
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin != std::string::npos && text[begin] == '{') {
+    return {path.stem().string(), parse_node_link(text, path.string())};
+  }
+  return {path.stem().string(), parse_ascii_map(text, path.string())};
 }
 
 std::vector<NamedMap> folder_maps(const std::filesystem::path& folder) {

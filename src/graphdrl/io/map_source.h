@@ -3,19 +3,22 @@
 
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "graphdrl/graph/grid_map.h"
+#include "graphdrl/io/node_link.h"
 
 namespace graphdrl {
 
 struct NamedMap {
   std::string name;  // what the user gave; a file's stem
-  GridMap map;
+  std::variant<GridMap, GraphMap> map;
 };
 
 // `paper:a` … `paper:j`, `paper` (all ten), a file, or a folder of files (read in order of name; hidden ones are
-// skipped). Throws Error where nothing can be read under that name. A file called `paper` is reachable as `./paper`.
+// skipped). A file that begins with '{' is a graph in node-link form, any other an ASCII map. Throws Error where
+// nothing can be read under that name. A file called `paper` is reachable as `./paper`.
 std::vector<NamedMap> load_maps(const std::string& source);
 
 // As load_maps, for a source that must hold exactly one map.

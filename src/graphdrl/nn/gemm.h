@@ -19,10 +19,11 @@ class PackedMatrix {
   int rows() const { return rows_; }        // k
   int columns() const { return columns_; }  // n
 
-  // All zeros, of the given size.
+  // A new size; the values are unspecified until set_columns() gives them.
   void reset(int rows, int columns);
 
   // Columns [first, first + count) from op(b): [rows, count], rows of b `ldb` apart.
+  // REQUIRES: first + count <= columns().
   void set_columns(int first, int count, Op op, const T* b, int ldb);
 
   // All of it.
@@ -34,8 +35,8 @@ class PackedMatrix {
   void set_transposed(const PackedMatrix& other);
 
   int panel_count() const { return (columns_ + kPanelColumns - 1) / kPanelColumns; }
-  T* panel(int index) { return values_[static_cast<std::size_t>(index) * rows_].values; }
-  const T* panel(int index) const { return values_[static_cast<std::size_t>(index) * rows_].values; }
+  T* panel(int index) { return values_.data()[static_cast<std::size_t>(index) * rows_].values; }
+  const T* panel(int index) const { return values_.data()[static_cast<std::size_t>(index) * rows_].values; }
 
  private:
   struct alignas(64) PanelRow {

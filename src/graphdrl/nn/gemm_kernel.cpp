@@ -103,7 +103,7 @@ void multiply(const GemmTask<float>& task) {
   multiply_any(task);
 }
 
-#if !defined(__AVX2__)
+#if defined(GRAPHDRL_GEMM_DOUBLE)
 void multiply(const GemmTask<double>& task) {
   multiply_any(task);
 }

@@ -11,7 +11,7 @@ namespace {
 // The action that leads to `next`; kStop where it cannot be paid for.
 int step_to(const Observation& observation, NodeId next) {
   const int action = observation.action_to(next);
-  return affordable(observation.cost(action), observation.budget_left) ? action : kStop;
+  return observation.cost(action) <= observation.spendable ? action : kStop;
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ int RandomWalkPolicy::act_on(const Observation& observation) {
   const World& world = *observation.world;
   std::vector<NodeId> neighbours;
   for (int i = 0; i < world.open().degree(observation.position); ++i) {
-    if (!affordable(world.open().cost(observation.position, i), observation.budget_left)) continue;
+    if (world.open().cost(observation.position, i) > observation.spendable) continue;
     neighbours.push_back(world.open_neighbours(observation.position)[i]);
   }
   if (neighbours.empty()) return kStop;

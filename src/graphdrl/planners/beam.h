@@ -11,14 +11,15 @@ struct BeamOptions {
 };
 
 inline constexpr int kMaxBeamWidth = 1'000'000;
+inline constexpr double kMaxBeamBytes = 4e9;
 
-// The best walk found, the position first; it ends with its last first visit. Of walks that visit as many nodes, the
-// cheapest. Deterministic. Empty where the deadline passes before it is
-// found.
-std::vector<NodeId> beam_walk(const SearchStart& start, const BeamOptions& options, Deadline deadline = {});
+// The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. Optimal
+// where no partial walk had to be dropped. Deterministic. Empty where the deadline passes first. Throws Error where the
+// beam would need more than kMaxBeamBytes.
+std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline = {});
 
-// With a time limit, searches again and again with twice the width, until the time is up or a walk is known to be
-// optimal; the best walk counts. The first search, of the width given, is always finished.
+// With a time limit, searches again and again with twice the width, until the time is up, a walk is known to be optimal
+// or memory would run short; the best walk counts. The first search, of the width given, is always finished.
 class BeamPolicy final : public PlanPolicy {
  public:
   explicit BeamPolicy(BeamOptions options, TimeLimit limit = {}) : options_(options), limit_(limit) {}

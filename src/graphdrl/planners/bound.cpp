@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "graphdrl/env/observation.h"
+#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 namespace {
@@ -14,13 +14,14 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 // Least costs by number of nodes visited, from 0 up; kNever where so many cannot be had.
 using Costs = std::vector<double>;
 
-// The least cost to visit k nodes in two independent parts together, for every k.
-Costs together(const Costs& one, const Costs& other) {
+// The least cost to visit k nodes in two independent parts together, for every k that `limit` allows.
+Costs min_plus_convolution(const Costs& one, const Costs& other, double limit) {
   Costs sum(one.size() + other.size() - 1, kNever);
   for (std::size_t i = 0; i < one.size(); ++i) {
-    if (one[i] == kNever) continue;
+    if (one[i] > limit) continue;
     for (std::size_t j = 0; j < other.size(); ++j) sum[i + j] = std::min(sum[i + j], one[i] + other[j]);
   }
+  while (sum.back() > limit) sum.pop_back();  // k = 0 costs nothing
   return sum;
 }
 
@@ -36,40 +37,34 @@ struct Branch {
 };
 
 // Adds a branch beside another: the walk ends in one of them at most.
-void add_beside(Branch& branch, const Branch& other) {
-  Costs open = together(branch.open, other.closed);
-  lower_to(open, together(branch.closed, other.open));
+void add_beside(Branch& branch, const Branch& other, double limit) {
+  Costs open = min_plus_convolution(branch.open, other.closed, limit);
+  lower_to(open, min_plus_convolution(branch.closed, other.open, limit));
   branch.open = std::move(open);
-  branch.closed = together(branch.closed, other.closed);
+  branch.closed = min_plus_convolution(branch.closed, other.closed, limit);
 }
 
 class ArrivalBound {
  public:
-  ArrivalBound(const Graph& graph, NodeId start) : graph_(graph), back_(graph.reversed()), start_(start) {
-    reached_.resize(graph.node_count());
+  ArrivalBound(const Graph& graph, NodeId start, double limit)
+      : graph_(graph), back_(graph.reversed()), start_(start), limit_(limit), reached_(graph.node_count()) {
     reached_[start] = true;
-    order_ = {start};
-    for (std::size_t head = 0; head < order_.size(); ++head) {
-      for (const NodeId next : graph_.neighbours(order_[head])) {
-        if (reached_[next]) continue;
-        reached_[next] = true;
-        order_.push_back(next);
-      }
-    }
+    reached_nodes_ = {start};
+    NearestFirst(graph_).run(start, limit, [&](NodeId node, double) {
+      reached_[node] = true;
+      reached_nodes_.push_back(node);
+      return NearestFirst::Next::kThrough;
+    });
   }
 
-  const std::vector<NodeId>& reached() const { return order_; }
+  // What can be reached within the limit, the start first.
+  const std::vector<NodeId>& reached() const { return reached_nodes_; }
 
-  // Nodes besides the start that can be had for the budget.
-  int most_visited(double budget) {
+  // Nodes besides the start that can be had within the limit.
+  int most_visited() {
     hanging_.resize(graph_.node_count());
     find_blocks();
-    const Costs& open = hanging_[start_].open;
-    int most = 0;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      if (affordable(open[k], budget)) most = static_cast<int>(k);
-    }
-    return most;
+    return static_cast<int>(hanging_[start_].open.size()) - 1;
   }
 
  private:
@@ -89,8 +84,9 @@ class ArrivalBound {
   const Graph& graph_;
   Graph back_;
   NodeId start_;
+  double limit_;
   std::vector<bool> reached_;
-  std::vector<NodeId> order_;
+  std::vector<NodeId> reached_nodes_;
   std::vector<Branch> hanging_;  // [N], what hangs from a node, away from the start
   std::vector<int> block_of_;    // [N], marks the members of the block being closed
   int block_ = 0;
@@ -168,17 +164,20 @@ void ArrivalBound::close_block(NodeId root, const std::vector<NodeId>& members) 
     if (hanging_[member].open.size() == 1) {
       plain.push_back(arrival);
     } else {
-      add_beside(block, {behind(hanging_[member].closed, arrival), behind(hanging_[member].open, arrival)});
+      add_beside(block, {behind(hanging_[member].closed, arrival), behind(hanging_[member].open, arrival)}, limit_);
       hanging_[member] = {};
     }
   }
   std::sort(plain.begin(), plain.end());
   Costs sums = {0};
-  for (const double cost : plain) sums.push_back(sums.back() + cost);
-  add_beside(block, {sums, sums});
+  for (const double cost : plain) {
+    if (sums.back() + cost > limit_) break;
+    sums.push_back(sums.back() + cost);
+  }
+  add_beside(block, {sums, sums}, limit_);
   const double back = cheapest_arrival(root);
   for (std::size_t k = 1; k < block.closed.size(); ++k) block.closed[k] += back;
-  add_beside(hanging_[root], block);
+  add_beside(hanging_[root], block, limit_);
 }
 
 // How many nodes of a bipartite graph `steps` steps can visit at most; all of them where it is not bipartite.
@@ -212,7 +211,7 @@ int order_bound(const Graph& graph, const std::vector<NodeId>& reached) {
   // Kosaraju's algorithm: nodes by the time a depth-first search leaves them, then the parts by searches backwards.
   const Graph back = graph.reversed();
   std::vector<bool> seen(graph.node_count());
-  std::vector<NodeId> left;
+  std::vector<NodeId> finished;
   struct Frame {
     NodeId node;
     std::size_t next = 0;
@@ -223,7 +222,7 @@ int order_bound(const Graph& graph, const std::vector<NodeId>& reached) {
     Frame& frame = stack.back();
     const auto neighbours = graph.neighbours(frame.node);
     if (frame.next == neighbours.size()) {
-      left.push_back(frame.node);
+      finished.push_back(frame.node);
       stack.pop_back();
       continue;
     }
@@ -232,26 +231,26 @@ int order_bound(const Graph& graph, const std::vector<NodeId>& reached) {
     seen[next] = true;
     stack.push_back({next});
   }
-  std::vector<int> part(graph.node_count(), -1);
+  std::vector<int> component(graph.node_count(), -1);
   std::vector<int> most;  // nodes on the best way from the start to the end of a part; parts come in order
-  for (auto root = left.rbegin(); root != left.rend(); ++root) {
-    if (part[*root] >= 0) continue;
+  for (auto root = finished.rbegin(); root != finished.rend(); ++root) {
+    if (component[*root] >= 0) continue;
     const int index = static_cast<int>(most.size());
     int size = 0;
     int before = 0;
     std::vector<NodeId> members = {*root};
-    part[*root] = index;
+    component[*root] = index;
     while (!members.empty()) {
       const NodeId node = members.back();
       members.pop_back();
       ++size;
       for (const NodeId from : back.neighbours(node)) {
         if (!seen[from]) continue;
-        if (part[from] < 0) {
-          part[from] = index;
+        if (component[from] < 0) {
+          component[from] = index;
           members.push_back(from);
-        } else if (part[from] != index) {
-          before = std::max(before, most[part[from]]);
+        } else if (component[from] != index) {
+          before = std::max(before, most[component[from]]);
         }
       }
     }
@@ -270,10 +269,9 @@ double cheapest_edge(const Graph& graph) {
 
 int max_visited(const SearchStart& start) {
   const Graph& open = start.world->open();
-  ArrivalBound arrivals(open, start.position);
-  int most = 1 + arrivals.most_visited(start.budget_left);
-  const double steps =
-      open.edge_count() == 0 ? 0 : std::floor(start.budget_left / cheapest_edge(open) + 1e-9 * (1 + start.budget_left));
+  ArrivalBound arrivals(open, start.position, start.limit());
+  int most = 1 + arrivals.most_visited();
+  const double steps = open.edge_count() == 0 ? 0 : std::floor(start.limit() / cheapest_edge(open) * (1 + 1e-12));
   most = std::min(most, colour_bound(open, arrivals.reached(), steps));
   if (open.directed()) most = std::min(most, order_bound(open, arrivals.reached()));
   // Where the walk began before: its nodes count again at worst, but nothing counts that is neither visited nor

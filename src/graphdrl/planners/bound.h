@@ -16,7 +16,8 @@
 namespace graphdrl {
 
 // No walk from here within the budget left leaves more nodes visited than this, those visited before it among them.
-// Cost: O(nodes² + edges).
+// Cost: O(edges + nodes in reach · nodes the
+// budget allows).
 int max_visited(const SearchStart& start);
 
 }  // namespace graphdrl

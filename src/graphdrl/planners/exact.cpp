@@ -88,7 +88,7 @@ class ExactSearch {
     start_ = reach.state;
     fits_ = !neighbours_.empty();
     unvisited_ = static_cast<int>(nodes_.size()) - std::popcount(start_.visited);
-    budget_ = static_cast<int>(std::min(start.budget_left + 1e-9, 1e9));
+    budget_ = static_cast<int>(std::min(start.limit(), 1e9));
   }
 
   std::optional<Optimum> optimum() const;
@@ -206,7 +206,7 @@ std::optional<std::vector<NodeId>> ExactSearch::walk() {
 class WeightedSearch {
  public:
   explicit WeightedSearch(const SearchStart& start, Deadline deadline = {})
-      : deadline_(deadline), reach_(start), budget_(start.budget_left) {
+      : deadline_(deadline), reach_(start), limit_(start.limit()) {
     if (reach_.neighbours.empty()) return;
     const int count = static_cast<int>(reach_.nodes.size());
     for (int node = 0; node < count; ++node) {
@@ -234,7 +234,7 @@ class WeightedSearch {
     for (const auto& [cost, node] : arrivals_) {
       if ((state.visited & bit(node)) != 0) continue;
       spent += cost;
-      if (!affordable(spent, budget_)) break;
+      if (spent > limit_) break;
       ++gain;
     }
     return gain;
@@ -251,50 +251,51 @@ class WeightedSearch {
 
   Deadline deadline_;
   Reach reach_;
-  double budget_;
+  double limit_;
   std::vector<std::pair<double, int>> arrivals_;  // the cheapest edge into each node, cheapest first
   std::vector<Entry> entries_;
   std::vector<int> heap_;
   std::unordered_map<State, double, StateHash> least_spent_;
 };
 
-// Ways to all nodes through visited ground from one of them: Dijkstra's algorithm without a heap, for few nodes.
-struct Ways {
+// Shortest paths through visited ground from one of its nodes to all: Dijkstra's algorithm without a heap, for few
+// nodes.
+struct ShortestPaths {
   std::array<double, kExactMaxNodes> cost;
   std::array<int, kExactMaxNodes> before;
 };
 
-Ways ways_from(const Reach& reach, const State& state) {
-  Ways ways;
-  ways.cost.fill(std::numeric_limits<double>::infinity());
-  ways.cost[state.position] = 0;
-  ways.before[state.position] = state.position;
+ShortestPaths shortest_paths(const Reach& reach, const State& state) {
+  ShortestPaths paths;
+  paths.cost.fill(std::numeric_limits<double>::infinity());
+  paths.cost[state.position] = 0;
+  paths.before[state.position] = state.position;
   NodeSet settled = 0;
   for (;;) {
     int node = -1;
     for (NodeSet rest = state.visited & ~settled; rest != 0; rest &= rest - 1) {
       const int other = std::countr_zero(rest);
-      if (node < 0 || ways.cost[other] < ways.cost[node]) node = other;
+      if (node < 0 || paths.cost[other] < paths.cost[node]) node = other;
     }
-    if (node < 0 || ways.cost[node] == std::numeric_limits<double>::infinity()) return ways;
+    if (node < 0 || paths.cost[node] == std::numeric_limits<double>::infinity()) return paths;
     settled |= bit(node);
     for (NodeSet next = reach.neighbours[node] & ~settled; next != 0; next &= next - 1) {
       const int other = std::countr_zero(next);
-      const double cost = ways.cost[node] + reach.costs[node][other];
-      if (cost >= ways.cost[other]) continue;
-      ways.cost[other] = cost;
-      ways.before[other] = node;
+      const double cost = paths.cost[node] + reach.costs[node][other];
+      if (cost >= paths.cost[other]) continue;
+      paths.cost[other] = cost;
+      paths.before[other] = node;
     }
   }
 }
 
 void WeightedSearch::expand(int index) {
   const Entry from = entries_[index];
-  const Ways ways = ways_from(reach_, from.state);
+  const ShortestPaths paths = shortest_paths(reach_, from.state);
   for (int node = 0; node < std::ssize(reach_.nodes); ++node) {
-    if ((from.state.visited & bit(node)) != 0 || !affordable(from.spent + ways.cost[node], budget_)) continue;
+    if ((from.state.visited & bit(node)) != 0 || from.spent + paths.cost[node] > limit_) continue;
     Entry entry{.state = {from.state.visited | bit(node), node},
-                .spent = from.spent + ways.cost[node],
+                .spent = from.spent + paths.cost[node],
                 .gain = from.gain + 1,
                 .most = 0,
                 .before = index};
@@ -339,9 +340,9 @@ std::vector<NodeId> WeightedSearch::unroll(int index) const {
   std::vector<NodeId> walk = {reach_.nodes[reach_.state.position]};
   for (const int next : chain) {
     const Entry& from = entries_[entries_[next].before];
-    const Ways ways = ways_from(reach_, from.state);
+    const ShortestPaths paths = shortest_paths(reach_, from.state);
     std::vector<NodeId> steps;
-    for (int node = entries_[next].state.position; node != from.state.position; node = ways.before[node]) {
+    for (int node = entries_[next].state.position; node != from.state.position; node = paths.before[node]) {
       steps.push_back(reach_.nodes[node]);
     }
     walk.insert(walk.end(), steps.rbegin(), steps.rend());

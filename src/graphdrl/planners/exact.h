@@ -1,10 +1,14 @@
 // Exact search: the walk that visits the most nodes a budget allows.
 //
-// A walk that wastes nothing goes from one first visit to the next by the shortest way through visited ground, so a
-// state is (visited set, position) and a move is a first visit. States are expanded in order of waste, the steps that
-// visited nothing new: a state that wasted w of a budget b can never gain more than b - w nodes, so the search ends as
-// soon as what it has found cannot be beaten. Among the optimal walks it returns the cheapest, and of these the
-// lexicographically first.
+// A walk that wastes nothing goes from one first visit to the next by the cheapest way through visited ground, so a
+// state is (visited set, position) and a move is a first visit.
+//
+// Where every edge costs 1, states are expanded in order of waste, the steps that visited nothing new: a state that
+// wasted w of a budget b can never gain more than b - w nodes, so the search ends as soon as what it has found cannot
+// be beaten. Among the optimal walks it returns the cheapest, and of these the lexicographically first.
+//
+// Where edges have costs, states are expanded in order of what they can gain at most, every node left at the cost of
+// its cheapest arrival. Among the optimal walks it returns the cheapest; of several such, always the same one.
 #pragma once
 
 #include <optional>

@@ -38,16 +38,20 @@ int PlanPolicy::act_on(const Observation& observation) {
   const auto steps = std::ssize(observation.walk) - 1;
   const NodeId start = observation.walk.front();
   const double budget = observation.budget_left + walk_cost(world, observation.walk);
-  const std::tuple key(&world, start, std::llround(1e6 * budget));
-  auto known = walks_.find(key);
-  if (known == walks_.end()) known = walks_.emplace(key, plan(search_start(world, start, budget)).walk).first;
-  const std::vector<NodeId>& walk = known->second;
+  const auto [known, fresh] = plans_.try_emplace({&world, start});
+  Remembered& remembered = known->second;
+  if (fresh || std::abs(remembered.budget - budget) > 1e-6 * budget) {
+    remembered = {budget, plan(search_start(world, start, budget)).walk};
+  }
+  const std::vector<NodeId>& walk = remembered.walk;
   const bool on_plan =
       steps < std::ssize(walk) && std::equal(observation.walk.begin(), observation.walk.end(), walk.begin());
   if (on_plan) return steps + 1 < std::ssize(walk) ? observation.action_to(walk[steps + 1]) : kStop;
 
-  SearchStart here{
-      .world = &world, .position = observation.position, .visited = {}, .budget_left = observation.budget_left};
+  SearchStart here{.world = &world,
+                   .position = observation.position,
+                   .visited = {},
+                   .budget_left = std::max(0.0, observation.budget_left)};
   for (const std::uint32_t visits : observation.visits) here.visited.push_back(visits > 0);
   const std::vector<NodeId> rest = plan(here).walk;
   return rest.size() < 2 ? kStop : observation.action_to(rest[1]);

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <map>
 #include <optional>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "graphdrl/planners/baselines.h"
@@ -17,6 +17,8 @@ struct SearchStart {
   NodeId position;
   std::vector<bool> visited;  // [N], the position among them
   double budget_left;         // in units of cost
+
+  double limit() const { return spending_limit(budget_left); }
 };
 
 SearchStart search_start(const World& world, NodeId start, double budget);
@@ -43,14 +45,18 @@ class PlanPolicy : public SingleEpisodePolicy {
  private:
   int act_on(const Observation& observation) final;
 
-  // Whole walks, by world, start and budget (in millionths: sums of costs are rounded).
-  std::map<std::tuple<const World*, NodeId, std::int64_t>, std::vector<NodeId>> walks_;
+  struct Remembered {
+    double budget;
+    std::vector<NodeId> walk;
+  };
+  std::map<std::pair<const World*, NodeId>, Remembered> plans_;  // the last one from each start
 };
 
 // Valid nodes visited after a walk, those before it among them.
 int visited_after(const SearchStart& start, std::span<const NodeId> walk);
 
-// What the steps of a walk cost. REQUIRES: every one follows an edge.
+// What the steps of a walk cost; a repeated node is a blocked move and costs 1. REQUIRES: every other step follows an
+// edge.
 double walk_cost(const World& world, std::span<const NodeId> walk);
 
 }  // namespace graphdrl

@@ -21,14 +21,15 @@ NamedTensors named_tensors(const torch::Tensor& values, const torch::Tensor& gra
 
 // A batch's edges and the graph of each node, as tensors.
 struct EdgeIndex {
-  torch::Tensor from;      // [2E] int64, rows of a batch's nodes
+  torch::Tensor from;      // [2E] int64, rows of a batch's nodes; both directions of every edge
   torch::Tensor to;        // [2E]
   torch::Tensor graph_of;  // [N], a node's graph
   std::int64_t graph_count;
 };
 EdgeIndex edge_index(const GraphBatch& batch, torch::Device device);
 
-// One gated graph convolution without its ELU [paper, eq. 7]. x: [N, F]; gives [N, D].
+// One gated graph convolution without its ELU [paper, eq. 7]: that of the tensors NAME.weight [L, D, D] and NAME.rnn.*,
+// as PyTorch Geometric has them. x: [N, F], F <= D; gives [N, D].
 torch::Tensor composed_conv(const EdgeIndex& edges, const torch::Tensor& x, const NamedTensors& tensors,
                             const std::string& name);
 

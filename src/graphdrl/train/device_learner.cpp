@@ -32,14 +32,14 @@ DeviceLearner::DeviceLearner(torch::Device device, const LearnerOptions& options
   set_state(state);
 }
 
-const EdgeIndex& DeviceLearner::edges_of(const GraphBatch& batch) {
+const EdgeIndex& DeviceLearner::edges_of(const GraphBatch& batch, CachedEdges& cache) const {
   std::vector<const Graph*> graphs;
   for (int g = 0; g < batch.graph_count(); ++g) graphs.push_back(&batch.graph(g));
-  if (graphs != edges_graphs_) {
-    edges_ = edge_index(batch, device_);
-    edges_graphs_ = std::move(graphs);
+  if (graphs != cache.graphs) {
+    cache.edges = edge_index(batch, device_);
+    cache.graphs = std::move(graphs);
   }
-  return edges_;
+  return cache.edges;
 }
 
 torch::Tensor DeviceLearner::to_device(const std::vector<float>& values, std::vector<std::int64_t> shape) const {
@@ -49,7 +49,7 @@ torch::Tensor DeviceLearner::to_device(const std::vector<float>& values, std::ve
 double DeviceLearner::learn(const Minibatch& batch, Rng& rng) {
   const std::int64_t graphs = batch.graphs.graph_count();
   const std::int64_t nodes = batch.graphs.node_count();
-  const EdgeIndex& edges = edges_of(batch.graphs);
+  const EdgeIndex& edges = edges_of(batch.graphs, of_minibatch_);
   const torch::Tensor keep_scale = draw_keep_scale(graphs, kHiddenWidth, options_.dropout, rng).to(device_);
   torch::Tensor targets;
   {
@@ -84,7 +84,7 @@ double DeviceLearner::learn(const Minibatch& batch, Rng& rng) {
 void DeviceLearner::q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) {
   const torch::NoGradGuard no_grad;
   const torch::Tensor input = to_tensor(x).view({batch.node_count(), kFeatureCount}).to(device_);
-  copy_out(composed_q_values(edge_index(batch, device_), input, online_), q);
+  copy_out(composed_q_values(edges_of(batch, of_move_), input, online_), q);
 }
 
 LearnerState DeviceLearner::state() const {

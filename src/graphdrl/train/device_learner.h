@@ -1,4 +1,5 @@
-// A learner on any device of LibTorch, of LibTorch's operators alone.
+// A learner on any device of LibTorch, of LibTorch's operators alone. On a GPU, sums run in no fixed order: the same
+// seed gives the same policy on the CPU only. REQUIRES: the graphs of its batches outlive it.
 #pragma once
 
 #include "graphdrl/train/adam.h"
@@ -17,7 +18,12 @@ class DeviceLearner final : public Learner {
   void set_state(const LearnerState& state) override;
 
  private:
-  const EdgeIndex& edges_of(const GraphBatch& batch);
+  // The edges of the last batch that was asked for here: the next one is mostly of the same graphs.
+  struct CachedEdges {
+    std::vector<const Graph*> graphs;
+    EdgeIndex edges{};
+  };
+  const EdgeIndex& edges_of(const GraphBatch& batch, CachedEdges& cache) const;
   torch::Tensor to_device(const std::vector<float>& values, std::vector<std::int64_t> shape) const;
 
   torch::Device device_;
@@ -31,8 +37,8 @@ class DeviceLearner final : public Learner {
   torch::Tensor second_;
   NamedTensors online_;
   NamedTensors target_;
-  std::vector<const Graph*> edges_graphs_;  // the batch that edges_ is of: the next one is mostly of the same graphs
-  EdgeIndex edges_{};
+  CachedEdges of_minibatch_;
+  CachedEdges of_move_;
 };
 
 }  // namespace graphdrl

@@ -44,7 +44,8 @@ void for_each_field(Options& options, const Field& field) {
   field("episodes", options.episodes, "Episodes; epsilon's schedule spans all of them");
   field("budget", options.budget, "Steps per episode, or a multiple of the valid nodes, as 1.1x");
   field("start", options.start, "Where episodes start: random, a node id, or row,col");
-  field("seed", options.seed, "The same seed gives the same policy file, byte for byte (same build and machine)");
+  field("seed", options.seed,
+        "The same seed gives the same policy file, byte for byte (same build and machine, --device cpu)");
   field("reward", options.reward, "visit_penalty (paper, eq. 3) or coverage_gain (eq. 2)");
   field("end_at_full_coverage", options.end_at_full_coverage, "End an episode at full coverage, with a bonus of 1");
   field("punish_blocked_by_visits", options.punish_blocked_by_visits,
