@@ -10,9 +10,9 @@
 namespace graphdrl {
 namespace {
 
-// Nodes after which a chunk is closed: 4 grids of 5×5; rows enough for the matrix products to run at full speed, few
+// Nodes after which a chunk is closed: 2 grids of 5×5; rows enough for the matrix products to run at full speed, few
 // enough for a chunk's gates to stay in a core's second-level cache.
-constexpr int kChunkNodes = 96;
+constexpr int kChunkNodes = 48;
 
 // Rows of gates that a gradient's product packs at a time; they stay in the second-level cache.
 constexpr int kBlockNodes = 200;
