@@ -14,8 +14,8 @@ namespace graphdrl {
 namespace {
 
 // What an unvisited node is likely to cost on top of one step, by its unvisited neighbours: one without any must be
-// left again by the way one came; one with a single neighbour is a dead end. In mean edges; the best of nine pairs on
-// random mazes and obstacle maps that are in no test split.
+// left again by the way one came; one with a single neighbour is a dead end. In mean edges; of
+// fourteen pairs tried, the one that visits most on random 11×11 mazes at 1.0x.
 constexpr double kIsolatedPenalty = 4;
 constexpr double kDeadEndPenalty = 2;
 constexpr std::uint64_t kHashSeed = 1;
