@@ -8,26 +8,19 @@ namespace {
 
 constexpr int kTransposeBlock = 16;
 
-struct Kernel {
-  const char* isa;
-  void (*multiply)(const GemmTask<float>& task);
-};
+using Kernel = void (*)(const GemmTask<float>& task);
 
 Kernel choose_kernel() {
 #if defined(GRAPHDRL_X86_KERNELS)
-  if (__builtin_cpu_supports("avx512f")) return {"avx512", avx512::multiply};
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {"avx2", avx2::multiply};
+  if (__builtin_cpu_supports("avx512f")) return avx512::multiply;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::multiply;
 #endif
-  return {"plain", plain::multiply};
-}
-
-const Kernel& kernel() {
-  static const Kernel chosen = choose_kernel();
-  return chosen;
+  return plain::multiply;
 }
 
 void multiply(const GemmTask<float>& task) {
-  kernel().multiply(task);
+  static const Kernel kernel = choose_kernel();
+  kernel(task);
 }
 
 void multiply(const GemmTask<double>& task) {
@@ -39,10 +32,6 @@ void note(Op op_a, int m, int n, int k, int lda, int ldc) {
 }
 
 }  // namespace
-
-const char* gemm_isa() {
-  return kernel().isa;
-}
 
 template <typename T>
 void PackedMatrix<T>::reset(int rows, int columns) {

@@ -72,7 +72,4 @@ struct GemmShape {
 };
 inline thread_local std::vector<GemmShape>* gemm_log = nullptr;  // null to note nothing
 
-// The instruction set in use: "avx512", "avx2" or "plain".
-const char* gemm_isa();
-
 }  // namespace graphdrl

@@ -46,8 +46,8 @@ void add_beside(Branch& branch, const Branch& other, double limit) {
 
 class ArrivalBound {
  public:
-  ArrivalBound(const Graph& graph, NodeId start, double limit)
-      : graph_(graph), back_(graph.reversed()), start_(start), limit_(limit), reached_(graph.node_count()) {
+  ArrivalBound(const Graph& graph, const Graph& back, NodeId start, double limit)
+      : graph_(graph), back_(back), start_(start), limit_(limit), reached_(graph.node_count()) {
     reached_[start] = true;
     reached_nodes_ = {start};
     NearestFirst(graph_).run(start, limit, [&](NodeId node, double) {
@@ -82,7 +82,7 @@ class ArrivalBound {
   double cheapest_arrival(NodeId node) const;
 
   const Graph& graph_;
-  Graph back_;
+  const Graph& back_;  // graph_ turned round
   NodeId start_;
   double limit_;
   std::vector<bool> reached_;
@@ -181,8 +181,7 @@ void ArrivalBound::close_block(NodeId root, const std::vector<NodeId>& members) 
 }
 
 // How many nodes of a bipartite graph `steps` steps can visit at most; all of them where it is not bipartite.
-int colour_bound(const Graph& graph, const std::vector<NodeId>& reached, double steps) {
-  const Graph back = graph.reversed();
+int colour_bound(const Graph& graph, const Graph& back, const std::vector<NodeId>& reached, double steps) {
   std::vector<int> colour(graph.node_count(), -1);
   std::vector<bool> in_reach(graph.node_count());
   for (const NodeId node : reached) in_reach[node] = true;
@@ -207,9 +206,8 @@ int colour_bound(const Graph& graph, const std::vector<NodeId>& reached, double 
 }
 
 // The most nodes on a way through the strongly connected parts of a directed graph.
-int order_bound(const Graph& graph, const std::vector<NodeId>& reached) {
+int order_bound(const Graph& graph, const Graph& back, const std::vector<NodeId>& reached) {
   // Kosaraju's algorithm: nodes by the time a depth-first search leaves them, then the parts by searches backwards.
-  const Graph back = graph.reversed();
   std::vector<bool> seen(graph.node_count());
   std::vector<NodeId> finished;
   struct Frame {
@@ -269,11 +267,12 @@ double cheapest_edge(const Graph& graph) {
 
 int max_visited(const SearchStart& start) {
   const Graph& open = start.world->open();
-  ArrivalBound arrivals(open, start.position, start.limit());
+  const Graph back = open.reversed();
+  ArrivalBound arrivals(open, back, start.position, start.limit());
   int most = 1 + arrivals.most_visited();
   const double steps = open.edge_count() == 0 ? 0 : std::floor(start.limit() / cheapest_edge(open) * (1 + 1e-12));
-  most = std::min(most, colour_bound(open, arrivals.reached(), steps));
-  if (open.directed()) most = std::min(most, order_bound(open, arrivals.reached()));
+  most = std::min(most, colour_bound(open, back, arrivals.reached(), steps));
+  if (open.directed()) most = std::min(most, order_bound(open, back, arrivals.reached()));
   // Where the walk began before: its nodes count again at worst, but nothing counts that is neither visited nor
   // reached.
   const auto visited_before = static_cast<int>(std::count(start.visited.begin(), start.visited.end(), true)) - 1;
