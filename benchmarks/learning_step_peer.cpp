@@ -2,8 +2,6 @@
 // input.
 //   learning_step_peer FILE THREADS
 //   "learn N" samples and learns N times, "move N" chooses N moves; the answer is milliseconds for one.
-#include <torch/torch.h>
-
 #include <chrono>
 #include <iostream>
 #include <string>
@@ -51,7 +49,7 @@ int serve(const std::string& file, int threads) {
   Minibatch batch;  // the first transitions, for the losses to agree on
   batch.clear();
   for (std::size_t i = 0; i < kBatchSize; ++i) append_transition(replay, i, encoders.front(), batch);
-  const torch::Tensor keep_scale = draw_keep_scale(kBatchSize, kHiddenWidth, 0.5, rng);
+  const std::vector<float> keep_scale = draw_keep_scale(kBatchSize, kHiddenWidth, 0.5, rng);
   const PaperParameters weights = learner.online().parameters();
   const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
 
@@ -63,8 +61,7 @@ int serve(const std::string& file, int threads) {
   tensors.emplace_back("next_x", states, std::span<const float>(all.next_x));
   tensors.emplace_back("actions", Shape{size}, std::span<const std::int64_t>(all.actions));
   tensors.emplace_back("rewards", Shape{size}, std::span<const float>(all.rewards));
-  tensors.emplace_back("keep_scale", Shape{kBatchSize, kHiddenWidth},
-                       std::span<const float>(keep_scale.data_ptr<float>(), kBatchSize * kHiddenWidth));
+  tensors.emplace_back("keep_scale", Shape{kBatchSize, kHiddenWidth}, std::span<const float>(keep_scale));
   tensors.emplace_back("loss", Shape{1}, std::span<const double>(loss));
   write_safetensors(file, tensors, {});
 

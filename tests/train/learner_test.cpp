@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "graphdrl/env/episode.h"
 #include "graphdrl/nn/features.h"
 #include "graphdrl/train/device_learner.h"
@@ -13,24 +16,25 @@ namespace graphdrl {
 namespace {
 
 TEST(TdTargets, AreWorkedOutByHand) {
-  const TdBatch batch{
-      .reward = torch::tensor({1.0f, 2.0f, 3.0f}),
-      .terminal = torch::tensor({false, false, true}),
-      .next_q = torch::tensor({{1.0f, 5.0f, 2.0f, 0.0f}, {7.0f, 1.0f, 7.0f, 3.0f}, {9.0f, 9.0f, 9.0f, 9.0f}}),
-      .chooser = torch::tensor({{0.0f, 1.0f, 2.0f, 0.0f}, {0.0f, 1.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f, 0.0f}})};
+  const std::vector<float> rewards = {1, 2, 3};
+  const std::vector<std::uint8_t> terminal = {0, 0, 1};
+  const std::vector<float> next_q = {1, 5, 2, 0, 7, 1, 7, 3, 9, 9, 9, 9};
+  const std::vector<float> chooser = {0, 1, 2, 0, 0, 1, 0, 0, 1, 0, 0, 0};
   // Double DQN: the chooser picks actions 2 and 1; nothing follows a terminal state.
-  EXPECT_TRUE(torch::allclose(td_targets(batch, 0.5), torch::tensor({1 + 0.5f * 2, 2 + 0.5f * 1, 3.0f})));
+  const TdBatch batch{.rewards = rewards, .terminal = terminal, .next_q = next_q, .chooser = chooser};
+  EXPECT_EQ(td_targets(batch, 0.5), (std::vector<float>{1 + 0.5f * 2, 2 + 0.5f * 1, 3}));
   TdBatch dqn = batch;
-  dqn.chooser = dqn.next_q;
-  EXPECT_TRUE(torch::allclose(td_targets(dqn, 0.5), torch::tensor({1 + 0.5f * 5, 2 + 0.5f * 7, 3.0f})));
+  dqn.chooser = next_q;
+  EXPECT_EQ(td_targets(dqn, 0.5), (std::vector<float>{1 + 0.5f * 5, 2 + 0.5f * 7, 3}));
 }
 
 TEST(KeepScale, DropsItsShareAndKeepsTheMean) {
   Rng rng(1);
-  const torch::Tensor scale = draw_keep_scale(200, 256, 0.25, rng);
-  EXPECT_NEAR((scale == 0).to(torch::kFloat).mean().item<double>(), 0.25, 0.01);
-  EXPECT_NEAR(scale.mean().item<double>(), 1, 0.02);
-  EXPECT_TRUE((draw_keep_scale(2, 3, 0, rng) == 1).all().item<bool>());
+  const std::vector<float> scale = draw_keep_scale(200, 256, 0.25, rng);
+  const auto size = static_cast<double>(scale.size());
+  EXPECT_NEAR(static_cast<double>(std::count(scale.begin(), scale.end(), 0.0f)) / size, 0.25, 0.01);
+  EXPECT_NEAR(std::accumulate(scale.begin(), scale.end(), 0.0) / size, 1, 0.02);
+  EXPECT_EQ(draw_keep_scale(2, 3, 0, rng), std::vector<float>(6, 1.0f));
 }
 
 // A map of four nodes.
@@ -101,14 +105,16 @@ TEST(Learner, MovesTheTargetByTheSoftUpdate) {
   add_transition(tiny, {2}, 1, batch);
   Rng rng(1);
   KernelLearner learner({.soft_update = 0.25}, rng);
-  const torch::Tensor before = learner.target().values().clone();
-  EXPECT_TRUE(torch::equal(before, learner.online().values())) << "the target starts as a copy";
+  const PaperParameters before = learner.target().parameters();
+  const std::span<const float> online = learner.online().parameters().values();
+  const std::span<const float> target = learner.target().parameters().values();
+  EXPECT_TRUE(std::ranges::equal(before.values(), online)) << "the target starts as a copy";
   learner.learn(batch, rng);
-  const torch::Tensor expected = 0.25 * learner.online().values() + 0.75 * before;  // paper, eq. 6
-  EXPECT_TRUE(torch::allclose(learner.target().values(), expected, 1e-5, 1e-7));
-  EXPECT_FALSE(torch::equal(learner.online().values(), before));
-  // Batch norm's running statistics, the last values, move too.
-  EXPECT_NE(learner.online().values()[-1].item<float>(), before[-1].item<float>());
+  for (std::size_t i = 0; i < online.size(); ++i) {
+    EXPECT_NEAR(target[i], 0.25 * online[i] + 0.75 * before.values()[i], 1e-6) << i;  // paper, eq. 6
+  }
+  EXPECT_FALSE(std::ranges::equal(before.values(), online));
+  EXPECT_NE(online.back(), before.values().back()) << "batch norm's running statistics, the last values, move too";
 }
 
 TEST(Learner, OfLibTorchsOperatorsLearnsWhatTheKernelsLearn) {

@@ -1,9 +1,8 @@
 // Computes Q-values, targets, loss and every gradient of one learning step on random states of several maps, and writes
 // them with everything they depend on to a safetensors file, for a PyTorch model to compute again.
 //   learning_step_probe OUT [--double-dqn]
-#include <torch/torch.h>
-
 #include <string_view>
+#include <utility>
 
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
@@ -74,11 +73,8 @@ int write_probe(const std::string& out, bool double_dqn) {
   std::vector<float> q(batch.actions.size() * kActionCount);
   learner.online().q_values(batch.graphs, batch.x, q);
   const PaperParameters online = learner.online().parameters();  // before the running statistics move
-  const torch::Tensor keep_scale = draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, 0.5, rng);
+  const std::vector<float> keep_scale = draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, 0.5, rng);
   const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
-  PaperParameters grad;
-  const torch::Tensor& flat = learner.online().gradients();
-  std::copy_n(flat.data_ptr<float>(), flat.numel(), grad.values().begin());
 
   const auto n = static_cast<std::int64_t>(batch.graphs.node_count());
   const auto b = static_cast<std::int64_t>(batch.graphs.graph_count());
@@ -98,14 +94,13 @@ int write_probe(const std::string& out, bool double_dqn) {
   add("rewards", {b}, batch.rewards);
   add("terminal", {b}, terminal);
   add("discount", {1}, discount);
-  tensors.emplace_back(
-      "keep_scale", Shape{b, kHiddenWidth},
-      std::span<const float>(keep_scale.data_ptr<float>(), static_cast<std::size_t>(keep_scale.numel())));
+  add("keep_scale", {b, kHiddenWidth}, keep_scale);
   add("q", {b, kActionCount}, q);
   add("loss", {1}, loss);
-  for (const auto& [prefix, parameters] : {std::pair("online.", &online), std::pair("grad.", &std::as_const(grad)),
-                                           std::pair("target.", &std::as_const(learner.target().parameters())),
-                                           std::pair("after.", &std::as_const(learner.online().parameters()))}) {
+  for (const auto& [prefix, parameters] :
+       {std::pair("online.", &online), std::pair("grad.", &learner.online().gradients()),
+        std::pair("target.", &std::as_const(learner.target().parameters())),
+        std::pair("after.", &std::as_const(learner.online().parameters()))}) {
     for (const TensorView& view : parameters->views(prefix)) tensors.push_back(view);
   }
   write_safetensors(out, tensors, {});

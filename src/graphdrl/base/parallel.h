@@ -14,22 +14,33 @@ void set_threads(int threads);
 int threads();
 int hardware_threads();
 
+enum class Schedule {
+  kDynamic,  // a task goes to the thread that is free
+  kFixed,    // task i runs on the same thread every time, whose cache still holds its data
+};
+
 // Runs task(0) … task(count - 1), each once, in any order. An exception of a task reaches the caller.
 template <typename Task>
-void parallel_for(int count, const Task& task) {
+void parallel_for(int count, const Task& task, Schedule schedule = Schedule::kDynamic) {
   if (threads() == 1 || count <= 1) {
     for (int i = 0; i < count; ++i) task(i);
     return;
   }
   std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
-  for (int i = 0; i < count; ++i) {
+  const auto run = [&](int i) {
     try {
       task(i);
     } catch (...) {
 #pragma omp critical(graphdrl_parallel_for)
       failure = std::current_exception();
     }
+  };
+  if (schedule == Schedule::kDynamic) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads())
+    for (int i = 0; i < count; ++i) run(i);
+  } else {
+#pragma omp parallel for schedule(static, 1) num_threads(threads())
+    for (int i = 0; i < count; ++i) run(i);
   }
   if (failure) std::rethrow_exception(failure);
 }

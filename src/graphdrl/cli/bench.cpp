@@ -15,7 +15,7 @@ namespace graphdrl {
 namespace {
 
 constexpr std::array kThreadCounts = {1, 2};
-constexpr int kRounds = 5;
+constexpr int kRounds = 15;
 
 struct LearningStep {
   double step_ms;

@@ -24,10 +24,11 @@ class VectorEnv {
   // or encode them.
   template <typename Visit>
   void for_each(const Visit& visit) {
-    parallel_for((size() + kBlock - 1) / kBlock, [&](int block) {
+    const auto visit_block = [&](int block) {
       const int end = std::min(size(), (block + 1) * kBlock);
       for (int i = block * kBlock; i < end; ++i) visit(i, episodes_[i]);
-    });
+    };
+    parallel_for((size() + kBlock - 1) / kBlock, visit_block, Schedule::kFixed);
   }
 
  private:

@@ -18,9 +18,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kEpisodes = 1024;     // side by side
-constexpr int kStepsPerVisit = 25;  // of one episode before the next one's turn
-constexpr int kRounds = 200;
+constexpr int kEpisodes = 1024;      // side by side
+constexpr int kStepsPerVisit = 100;  // of one episode before the next one's turn
+constexpr int kRounds = 50;
 constexpr int kMoves = 300;
 
 double seconds_since(Clock::time_point start) {

@@ -8,13 +8,11 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/nn/features.h"
-#include "graphdrl/nn/gemm.h"
 #include "graphdrl/nn/vector_math.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr int kPooledWidth = kConvShapes.back().width;
 constexpr const char* kDescriptionKey = "network";
 
 std::vector<TensorSpec> make_specs() {
@@ -37,7 +35,7 @@ std::vector<TensorSpec> make_specs() {
     add(fmt::format("bn{}.weight", layer + 1), {width}, true);
     add(fmt::format("bn{}.bias", layer + 1), {width}, true);
   }
-  add("fc1.weight", {kHiddenWidth, kPooledWidth}, true);
+  add("fc1.weight", {kHiddenWidth, kFc1Shape.inputs}, true);
   add("fc1.bias", {kHiddenWidth}, true);
   add("fc2.weight", {kActionCount, kHiddenWidth}, true);
   add("fc2.bias", {kActionCount}, true);
@@ -56,7 +54,7 @@ const TensorSpec& find_spec(const std::string& name) {
 // Half the width of the uniform distribution a tensor starts from.
 float initial_bound(const TensorSpec& spec) {
   const float fan = spec.name.starts_with("conv")  ? static_cast<float>(kConvShapes[spec.name[4] - '1'].width)
-                    : spec.name.starts_with("fc1") ? static_cast<float>(kPooledWidth)
+                    : spec.name.starts_with("fc1") ? static_cast<float>(kFc1Shape.inputs)
                                                    : static_cast<float>(kHiddenWidth);
   return 1.0f / std::sqrt(fan);
 }
@@ -67,7 +65,7 @@ nlohmann::json network_description() {
   for (const auto [inputs, width, steps, elu] : kConvShapes) {
     layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
   }
-  layers.push_back({{"type", "linear"}, {"inputs", kPooledWidth}, {"width", kHiddenWidth}});
+  layers.push_back({{"type", "linear"}, {"inputs", kFc1Shape.inputs}, {"width", kHiddenWidth}});
   layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
   return {{"kind", "paper"},
           {"features", kFeatureNames},
@@ -126,6 +124,14 @@ GatedGraphConvTensors<float> PaperParameters::conv(int layer) {
 GatedGraphConvTensors<const float> PaperParameters::conv(int layer) const {
   const auto views = const_cast<PaperParameters*>(this)->conv(layer);
   return {.weight = views.weight, .w_ih = views.w_ih, .w_hh = views.w_hh, .b_ih = views.b_ih, .b_hh = views.b_hh};
+}
+
+LinearTensors<float> PaperParameters::linear(const std::string& name) {
+  return {.weight = tensor(name + ".weight"), .bias = tensor(name + ".bias")};
+}
+
+LinearTensors<const float> PaperParameters::linear(const std::string& name) const {
+  return {.weight = tensor(name + ".weight"), .bias = tensor(name + ".bias")};
 }
 
 std::vector<TensorView> PaperParameters::views(const std::string& prefix) const {
@@ -193,16 +199,15 @@ void PaperNetwork::set_parameters(const PaperParameters& parameters) {
 
 void PaperNetwork::normalise(int layer, std::span<float> x) const {
   const std::string name = fmt::format("bn{}", layer);
-  const float* const weight = parameters_->tensor(name + ".weight");
-  const float* const bias = parameters_->tensor(name + ".bias");
   const float* const mean = parameters_->tensor(name + ".running_mean");
   const float* const variance = parameters_->tensor(name + ".running_var");
   const int width = kConvShapes[layer - 1].width;
-  std::array<float, kPooledWidth> scale{};
-  for (int i = 0; i < width; ++i) scale[i] = weight[i] / std::sqrt(variance[i] + static_cast<float>(kBatchNormEpsilon));
-  for (float* row = x.data(); row != x.data() + x.size(); row += width) {
-    for (int i = 0; i < width; ++i) row[i] = (row[i] - mean[i]) * scale[i] + bias[i];
+  ColumnStatistics running{.mean = {mean, mean + width}, .variance = {variance, variance + width}, .inverse = {}};
+  for (const float value : running.variance) {
+    running.inverse.push_back(1 / std::sqrt(value + static_cast<float>(kBatchNormEpsilon)));
   }
+  const BatchNormTensors weights = {parameters_->tensor(name + ".weight"), parameters_->tensor(name + ".bias")};
+  batch_norm(static_cast<int>(x.size()) / width, width, x.data(), running, weights, x.data());
 }
 
 void PaperNetwork::q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) {
@@ -216,24 +221,12 @@ void PaperNetwork::q_values(const GraphBatch& batch, std::span<const float> x, s
     if (layer < 3) normalise(layer, output);
     input = output.data();
   }
-  pooled_.assign(static_cast<std::size_t>(graphs) * kPooledWidth, 0.0f);
-  for (int g = 0; g < graphs; ++g) {
-    float* const sum = pooled_.data() + static_cast<std::ptrdiff_t>(g) * kPooledWidth;
-    for (int node = batch.first_node(g); node < batch.first_node(g + 1); ++node) {
-      const float* const row = input + static_cast<std::ptrdiff_t>(node) * kPooledWidth;
-      for (int i = 0; i < kPooledWidth; ++i) sum[i] += row[i];
-    }
-  }
-  hidden_.resize(static_cast<std::size_t>(graphs) * kHiddenWidth);
-  const auto linear = [&](const std::string& name, int inputs, int width, const float* in, float* out) {
-    const float* const bias = parameters_->tensor(name + ".bias");
-    for (int g = 0; g < graphs; ++g) std::copy_n(bias, width, out + static_cast<std::ptrdiff_t>(g) * width);
-    gemm(Op::kNone, Op::kTranspose, graphs, width, inputs, in, inputs, parameters_->tensor(name + ".weight"), inputs,
-         true, out, width);
-  };
-  linear("fc1", kPooledWidth, kHiddenWidth, pooled_.data(), hidden_.data());
+  pooled_.resize(static_cast<std::size_t>(graphs) * kFc1Shape.inputs);
+  hidden_.resize(static_cast<std::size_t>(graphs) * kFc1Shape.outputs);
+  sum_pool(batch, kFc1Shape.inputs, input, pooled_.data());
+  linear(kFc1Shape, graphs, pooled_.data(), parameters_->linear("fc1"), hidden_.data());
   elu(hidden_.data(), hidden_.size());
-  linear("fc2", kHiddenWidth, kActionCount, hidden_.data(), q.data());
+  linear(kFc2Shape, graphs, hidden_.data(), parameters_->linear("fc2"), q.data());
 }
 
 }  // namespace graphdrl

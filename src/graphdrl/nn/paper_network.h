@@ -16,6 +16,7 @@
 #include "graphdrl/io/safetensors.h"
 #include "graphdrl/nn/gated_graph_conv.h"
 #include "graphdrl/nn/graph_batch.h"
+#include "graphdrl/nn/layers.h"
 
 namespace graphdrl {
 
@@ -23,6 +24,8 @@ inline constexpr std::array<GatedGraphConvShape, 3> kConvShapes = {
     {{7, 7, 4, true}, {7, 64, 4, true}, {64, 128, 4, true}}};
 inline constexpr int kHiddenWidth = 256;
 inline constexpr int kActionCount = 4;  // left, up, right, down
+inline constexpr LinearShape kFc1Shape = {kConvShapes[2].width, kHiddenWidth};
+inline constexpr LinearShape kFc2Shape = {kHiddenWidth, kActionCount};
 inline constexpr double kBatchNormEpsilon = 1e-5;
 inline constexpr double kBatchNormMomentum = 0.1;
 
@@ -54,6 +57,8 @@ class PaperParameters {
   const float* tensor(const std::string& name) const;
   GatedGraphConvTensors<float> conv(int layer);  // layer: 1 to 3
   GatedGraphConvTensors<const float> conv(int layer) const;
+  LinearTensors<float> linear(const std::string& name);  // "fc1", "fc2"
+  LinearTensors<const float> linear(const std::string& name) const;
 
   // The tensors under PyTorch's names, with `prefix` before each; for files. The values stay this object's.
   std::vector<TensorView> views(const std::string& prefix = "") const;

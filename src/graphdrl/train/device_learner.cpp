@@ -6,7 +6,6 @@
 
 #include "graphdrl/nn/features.h"
 #include "graphdrl/train/q_network.h"
-#include "graphdrl/train/td_target.h"
 
 namespace graphdrl {
 namespace {
@@ -50,18 +49,20 @@ double DeviceLearner::learn(const Minibatch& batch, Rng& rng) {
   const std::int64_t graphs = batch.graphs.graph_count();
   const std::int64_t nodes = batch.graphs.node_count();
   const EdgeIndex& edges = edges_of(batch.graphs, of_minibatch_);
-  const torch::Tensor keep_scale = draw_keep_scale(graphs, kHiddenWidth, options_.dropout, rng).to(device_);
+  const std::vector<float> kept = draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng);
+  const torch::Tensor keep_scale = to_device(kept, {graphs, kHiddenWidth});
   torch::Tensor targets;
   {
     const torch::NoGradGuard no_grad;
     const torch::Tensor next_x = to_device(batch.next_x, {nodes, kFeatureCount});
-    TdBatch td{.reward = to_device(batch.rewards, {graphs}),
-               .terminal = torch::tensor(std::vector<std::int64_t>(batch.terminal.begin(), batch.terminal.end()))
-                               .to(device_, torch::kBool),
-               .next_q = composed_q_values(edges, next_x, target_),
-               .chooser = {}};
-    td.chooser = options_.double_dqn ? composed_q_values(edges, next_x, online_) : td.next_q;
-    targets = td_targets(td, options_.discount);
+    const torch::Tensor next_q = composed_q_values(edges, next_x, target_);
+    const torch::Tensor chooser = options_.double_dqn ? composed_q_values(edges, next_x, online_) : next_q;
+    const torch::Tensor value = next_q.gather(1, chooser.argmax(1, /*keepdim=*/true)).squeeze(1);
+    const torch::Tensor terminal =
+        torch::tensor(std::vector<std::int64_t>(batch.terminal.begin(), batch.terminal.end()))
+            .to(device_, torch::kBool);
+    // As td_targets(), without a copy to the host.
+    targets = to_device(batch.rewards, {graphs}) + options_.discount * value.masked_fill(terminal, 0.0);
   }
   gradients_.zero_();
   const torch::Tensor q = composed_q_values(edges, to_device(batch.x, {nodes, kFeatureCount}), online_, keep_scale);

@@ -1,63 +1,50 @@
 #include "graphdrl/train/kernel_learner.h"
 
-#include <torch/torch.h>
-
 #include <algorithm>
 
-#include "graphdrl/nn/features.h"
 #include "graphdrl/train/td_target.h"
 
 namespace graphdrl {
-namespace {
-
-// A tensor on the memory of a vector, for reading.
-template <typename T>
-torch::Tensor as_tensor(const std::vector<T>& values, std::vector<std::int64_t> shape) {
-  return torch::from_blob(const_cast<T*>(values.data()), shape, torch::CppTypeToScalarType<T>::value);
-}
-
-}  // namespace
 
 KernelLearner::KernelLearner(const LearnerOptions& options, Rng& rng)
     : options_(options),
       online_(PaperParameters(rng)),
       target_(online_.parameters()),
-      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {
-  at::set_num_threads(1);  // LibTorch's own operators: their sums would depend on the number of threads
-}
+      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {}
 
-double KernelLearner::compute_gradients(const Minibatch& batch, const torch::Tensor& keep_scale) {
-  const std::int64_t graphs = batch.graphs.graph_count();
-  const std::int64_t nodes = batch.graphs.node_count();
-  next_q_.resize(static_cast<std::size_t>(graphs * kActionCount));
+double KernelLearner::compute_gradients(const Minibatch& batch, std::span<const float> keep_scale) {
+  const int graphs = batch.graphs.graph_count();
+  next_q_.resize(static_cast<std::size_t>(graphs) * kActionCount);
   target_.q_values(batch.graphs, batch.next_x, next_q_);
-  TdBatch td{.reward = as_tensor(batch.rewards, {graphs}),
-             .terminal = as_tensor(batch.terminal, {graphs}).to(torch::kBool),
-             .next_q = as_tensor(next_q_, {graphs, kActionCount}),
-             .chooser = {}};
-  td.chooser = td.next_q;
+  TdBatch td{.rewards = batch.rewards, .terminal = batch.terminal, .next_q = next_q_, .chooser = next_q_};
   if (options_.double_dqn) {
     next_online_.resize(next_q_.size());
     online_.q_values(batch.graphs, batch.next_x, next_online_);
-    td.chooser = as_tensor(next_online_, {graphs, kActionCount});
+    td.chooser = next_online_;
   }
-  const torch::Tensor target = td_targets(td, options_.discount);
+  const std::vector<float> targets = td_targets(td, options_.discount);
 
-  online_.gradients().zero_();
-  const torch::Tensor q = online_.forward_train(batch.graphs, as_tensor(batch.x, {nodes, kFeatureCount}), keep_scale);
-  const torch::Tensor chosen = q.gather(1, as_tensor(batch.actions, {graphs, 1})).squeeze(1);
-  const torch::Tensor loss = torch::mse_loss(chosen, target);  // L(θ) [paper, eq. 5]
-  loss.backward();
-  return loss.item<double>();
+  q_.resize(next_q_.size());
+  online_.forward_train(batch.graphs, batch.x, keep_scale, q_);
+  double loss = 0;  // L(θ) [paper, eq. 5], a mean of squares
+  for (int g = 0; g < graphs; ++g) {
+    float* const row = q_.data() + static_cast<std::ptrdiff_t>(g) * kActionCount;
+    const std::int64_t action = batch.actions[g];
+    const float error = row[action] - targets[g];
+    loss += double{error} * error / graphs;
+    std::fill_n(row, kActionCount, 0.0f);
+    row[action] = 2 * error / static_cast<float>(graphs);
+  }
+  online_.backward(batch.graphs, keep_scale, q_);
+  return loss;
 }
 
 double KernelLearner::learn(const Minibatch& batch, Rng& rng) {
   const double loss =
       compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng));
-  const torch::Tensor& grad = online_.gradients();
+  const std::size_t trainable = PaperParameters::trainable_count();
   const std::span<float> values = online_.parameters().values();
-  adam_.step({grad.data_ptr<float>(), static_cast<std::size_t>(grad.numel())},
-             values.first(PaperParameters::trainable_count()));
+  adam_.step(online_.gradients().values().first(trainable), values.first(trainable));
   soft_update(values, options_.soft_update, target_.parameters().values());
   online_.update();
   target_.update();

@@ -24,7 +24,7 @@ class KernelLearner final : public Learner {
 
   // The loss [paper, eq. 5]; its gradients stay in online().gradients(), not clamped yet.
   // keep_scale: [B, 256], see QNetwork::forward_train.
-  double compute_gradients(const Minibatch& batch, const torch::Tensor& keep_scale);
+  double compute_gradients(const Minibatch& batch, std::span<const float> keep_scale);
 
   QNetwork& online() { return online_; }
   QNetwork& target() { return target_; }
@@ -36,6 +36,7 @@ class KernelLearner final : public Learner {
   Adam adam_;
   std::vector<float> next_q_;       // [B, A]
   std::vector<float> next_online_;  // [B, A]
+  std::vector<float> q_;            // [B, A]
 };
 
 }  // namespace graphdrl

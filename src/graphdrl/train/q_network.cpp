@@ -1,53 +1,91 @@
 #include "graphdrl/train/q_network.h"
 
 #include <fmt/format.h>
-#include <torch/torch.h>
+
+#include "graphdrl/nn/vector_math.h"
 
 namespace graphdrl {
+namespace {
+
+void multiply(std::span<const float> scale, std::vector<float>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] *= scale[i];
+}
+
+}  // namespace
 
 QNetwork::QNetwork(PaperParameters parameters) : parameters_(std::move(parameters)) {
-  const std::span<float> memory = parameters_.values();
-  values_ = torch::from_blob(memory.data(), {static_cast<std::int64_t>(memory.size())});
-  gradients_ = torch::zeros({static_cast<std::int64_t>(PaperParameters::trainable_count())});
-  leaves_ = named_tensors(values_, gradients_);
   update();
 }
 
-GatedGraphConvLeaves QNetwork::conv_leaves(int layer) const {
-  const std::string name = fmt::format("conv{}", layer);
-  return {.weight = leaves_.at(name + ".weight"),
-          .w_ih = leaves_.at(name + ".rnn.weight_ih"),
-          .w_hh = leaves_.at(name + ".rnn.weight_hh"),
-          .b_ih = leaves_.at(name + ".rnn.bias_ih"),
-          .b_hh = leaves_.at(name + ".rnn.bias_hh")};
+BatchNormTensors QNetwork::batch_norm_weights(int layer) const {
+  return {.weight = parameters_.tensor(fmt::format("bn{}.weight", layer)),
+          .bias = parameters_.tensor(fmt::format("bn{}.bias", layer))};
 }
 
-torch::Tensor QNetwork::forward_train(const GraphBatch& batch, const torch::Tensor& x,
-                                      const torch::Tensor& keep_scale) {
-  torch::Tensor h = x;
+void QNetwork::forward_train(const GraphBatch& batch, std::span<const float> x, std::span<const float> keep_scale,
+                             std::span<float> q) {
+  const int nodes = batch.node_count();
+  const int graphs = batch.graph_count();
+  const float* input = x.data();
   for (int layer = 1; layer <= 3; ++layer) {
-    h = gated_graph_conv(inference_.conv(layer), batch, h, conv_leaves(layer));
+    const int width = kConvShapes[layer - 1].width;
+    std::vector<float>& output = outputs_[layer - 1];
+    output.resize(static_cast<std::size_t>(nodes) * width);
+    inference_.conv(layer).forward(batch, input, output.data(), /*keep=*/true);
     if (layer == 3) break;
-    const std::string name = fmt::format("bn{}", layer);
-    h = torch::batch_norm(h, leaves_.at(name + ".weight"), leaves_.at(name + ".bias"),
-                          leaves_.at(name + ".running_mean"), leaves_.at(name + ".running_var"), /*training=*/true,
-                          kBatchNormMomentum, kBatchNormEpsilon, /*cudnn_enabled=*/false);
+    ColumnStatistics& statistics = statistics_[layer - 1];
+    statistics = column_statistics(nodes, width, output.data(), kBatchNormEpsilon);
+    float* const running_mean = parameters_.tensor(fmt::format("bn{}.running_mean", layer));
+    float* const running_variance = parameters_.tensor(fmt::format("bn{}.running_var", layer));
+    const float unbiased = static_cast<float>(nodes) / static_cast<float>(std::max(nodes - 1, 1));
+    constexpr auto kMomentum = static_cast<float>(kBatchNormMomentum);
+    for (int i = 0; i < width; ++i) {
+      running_mean[i] += kMomentum * (statistics.mean[i] - running_mean[i]);
+      running_variance[i] += kMomentum * (statistics.variance[i] * unbiased - running_variance[i]);
+    }
+    std::vector<float>& normalised = normalised_[layer - 1];
+    normalised.resize(output.size());
+    batch_norm(nodes, width, output.data(), statistics, batch_norm_weights(layer), normalised.data());
+    input = normalised.data();
   }
-  // Sum pooling as a product: cheaper than LibTorch's sums over ragged ranges.
-  const torch::Tensor pooling = torch::zeros({batch.graph_count(), batch.node_count()});
-  for (int g = 0; g < batch.graph_count(); ++g) {
-    float* const row = pooling.data_ptr<float>() + static_cast<std::ptrdiff_t>(g) * batch.node_count();
-    std::fill(row + batch.first_node(g), row + batch.first_node(g + 1), 1.0f);
-  }
-  h = torch::mm(pooling, h);
-  h = torch::elu(torch::linear(h, leaves_.at("fc1.weight"), leaves_.at("fc1.bias"))) * keep_scale;
-  return torch::linear(h, leaves_.at("fc2.weight"), leaves_.at("fc2.bias"));
+  pooled_.resize(static_cast<std::size_t>(graphs) * kFc1Shape.inputs);
+  activated_.resize(static_cast<std::size_t>(graphs) * kFc1Shape.outputs);
+  sum_pool(batch, kFc1Shape.inputs, outputs_[2].data(), pooled_.data());
+  linear(kFc1Shape, graphs, pooled_.data(), std::as_const(parameters_).linear("fc1"), activated_.data());
+  elu(activated_.data(), activated_.size());
+  hidden_ = activated_;
+  multiply(keep_scale, hidden_);
+  linear(kFc2Shape, graphs, hidden_.data(), std::as_const(parameters_).linear("fc2"), q.data());
 }
 
-torch::Tensor draw_keep_scale(std::int64_t rows, std::int64_t width, double p, Rng& rng) {
-  torch::Tensor scale = torch::empty({rows, width});
-  const std::span<float> values(scale.data_ptr<float>(), static_cast<std::size_t>(rows * width));
-  for (float& value : values) value = rng.uniform() < p ? 0.0f : static_cast<float>(1 / (1 - p));
+void QNetwork::backward(const GraphBatch& batch, std::span<const float> keep_scale, std::span<const float> grad_q) {
+  const int nodes = batch.node_count();
+  const int graphs = batch.graph_count();
+  grad_hidden_.resize(hidden_.size());
+  grad_pooled_.resize(pooled_.size());
+  for (int layer = 0; layer < 3; ++layer) grads_[layer].resize(outputs_[layer].size());
+  linear_backward(kFc2Shape, graphs, hidden_.data(), std::as_const(parameters_).linear("fc2"), grad_q.data(),
+                  grad_hidden_.data(), gradients_.linear("fc2"));
+  multiply(keep_scale, grad_hidden_);
+  elu_backward(activated_.data(), grad_hidden_.data(), grad_hidden_.size());
+  linear_backward(kFc1Shape, graphs, pooled_.data(), std::as_const(parameters_).linear("fc1"), grad_hidden_.data(),
+                  grad_pooled_.data(), gradients_.linear("fc1"));
+  sum_pool_backward(batch, kFc1Shape.inputs, grad_pooled_.data(), grads_[2].data());
+  for (int layer = 3; layer >= 1; --layer) {
+    float* const by_input = layer > 1 ? grads_[layer - 2].data() : nullptr;
+    inference_.conv(layer).backward(batch, outputs_[layer - 1].data(), grads_[layer - 1].data(), by_input,
+                                    gradients_.conv(layer));
+    if (layer == 1) break;
+    const int normal = layer - 1;
+    batch_norm_backward(nodes, kConvShapes[normal - 1].width, outputs_[normal - 1].data(), statistics_[normal - 1],
+                        batch_norm_weights(normal), by_input, gradients_.tensor(fmt::format("bn{}.weight", normal)),
+                        gradients_.tensor(fmt::format("bn{}.bias", normal)));
+  }
+}
+
+std::vector<float> draw_keep_scale(int rows, int width, double p, Rng& rng) {
+  std::vector<float> scale(static_cast<std::size_t>(rows) * width);
+  for (float& value : scale) value = rng.uniform() < p ? 0.0f : static_cast<float>(1 / (1 - p));
   return scale;
 }
 

@@ -1,28 +1,35 @@
-// The paper's Q-network as LibTorch trains it.
+// The paper's Q-network as the CPU trains it: forward and backward on the kernels of nn/.
 #pragma once
 
-#include <torch/types.h>
+#include <array>
+#include <span>
+#include <vector>
 
 #include "graphdrl/base/random.h"
+#include "graphdrl/nn/layers.h"
 #include "graphdrl/nn/paper_network.h"
-#include "graphdrl/train/composed_network.h"
-#include "graphdrl/train/gated_graph_conv_function.h"
 
 namespace graphdrl {
 
-// Parameters in one flat buffer, seen from three sides: by autograd as leaf tensors, whose gradients add up in one flat
-// buffer too; by the optimiser as spans; by inference as a PaperNetwork. update() must follow every change of them.
+// Parameters in one flat buffer, their gradients in another, and what a forward pass keeps for the backward pass.
+// update() must follow every change of the parameters.
 class QNetwork {
  public:
   explicit QNetwork(PaperParameters parameters);
   QNetwork(const QNetwork&) = delete;
+  QNetwork& operator=(const QNetwork&) = delete;
 
   // Train mode [paper, Table 1]: batch norm by the batch's statistics, which also move the running ones; dropout by
   // `keep_scale` [B, 256], 0 where a hidden value is dropped and 1 / (1 - p) where it is kept.
-  // x: [N, F]; gives q [B, A]. The batch must stay until backward() is done.
-  torch::Tensor forward_train(const GraphBatch& batch, const torch::Tensor& x, const torch::Tensor& keep_scale);
+  // x: [N, F], q: [B, A].
+  void forward_train(const GraphBatch& batch, std::span<const float> x, std::span<const float> keep_scale,
+                     std::span<float> q);
 
-  // Eval mode, without LibTorch. x: [N, F], q: [B, A].
+  // After forward_train() with the same batch and keep_scale. grad_q: [B, A], the loss's derivative by q; that by the
+  // parameters is left in gradients().
+  void backward(const GraphBatch& batch, std::span<const float> keep_scale, std::span<const float> grad_q);
+
+  // Eval mode. x: [N, F], q: [B, A].
   void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) {
     inference_.q_values(batch, x, q);
   }
@@ -31,20 +38,27 @@ class QNetwork {
 
   PaperParameters& parameters() { return parameters_; }
   const PaperParameters& parameters() const { return parameters_; }
-  torch::Tensor& values() { return values_; }        // [all], parameters and running statistics
-  torch::Tensor& gradients() { return gradients_; }  // [240678], of the trainable ones, in the buffer's order
+  const PaperParameters& gradients() const { return gradients_; }  // running statistics have none: 0
 
  private:
-  GatedGraphConvLeaves conv_leaves(int layer) const;
+  // One of the two batch norms, by its layer's number.
+  BatchNormTensors batch_norm_weights(int layer) const;
 
   PaperParameters parameters_;
+  PaperParameters gradients_;
   PaperNetwork inference_;
-  torch::Tensor values_;
-  torch::Tensor gradients_;
-  NamedTensors leaves_;
+  std::array<std::vector<float>, 3> outputs_;     // of the convolutions: [N, D]
+  std::array<std::vector<float>, 2> normalised_;  // of the batch norms: [N, D]
+  std::array<ColumnStatistics, 2> statistics_;
+  std::array<std::vector<float>, 3> grads_;  // by outputs_: [N, D]
+  std::vector<float> pooled_;                // [B, 128]
+  std::vector<float> activated_;             // [B, 256], before the dropout
+  std::vector<float> hidden_;                // [B, 256], after it
+  std::vector<float> grad_hidden_;           // [B, 256]
+  std::vector<float> grad_pooled_;           // [B, 128]
 };
 
-// 0 with probability p, else 1 / (1 - p); [rows, width] float32.
-torch::Tensor draw_keep_scale(std::int64_t rows, std::int64_t width, double p, Rng& rng);
+// 0 with probability p, else 1 / (1 - p); [rows, width].
+std::vector<float> draw_keep_scale(int rows, int width, double p, Rng& rng);
 
 }  // namespace graphdrl

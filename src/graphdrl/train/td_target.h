@@ -4,18 +4,20 @@
 // chosen, so they are not masked. A budget that runs out is no terminal state.
 #pragma once
 
-#include <torch/types.h>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace graphdrl {
 
 struct TdBatch {
-  torch::Tensor reward;    // [B] float32
-  torch::Tensor terminal;  // [B] bool
-  torch::Tensor next_q;    // [B, A] float32, from the target network
-  torch::Tensor chooser;   // [B, A] float32, what a* maximises: next_q itself, or the online network's
+  std::span<const float> rewards;          // [B]
+  std::span<const std::uint8_t> terminal;  // [B], 0 or 1
+  std::span<const float> next_q;           // [B, A], from the target network
+  std::span<const float> chooser;          // [B, A], what a* maximises: next_q itself, or the online network's
 };
 
-// [B] float32; no gradient flows through it.
-torch::Tensor td_targets(const TdBatch& batch, double discount);
+// [B]
+std::vector<float> td_targets(const TdBatch& batch, double discount);
 
 }  // namespace graphdrl
