@@ -42,7 +42,8 @@ TEST(Registry, MakesPoliciesByNameAndFile) {
   EXPECT_NE(make_policy(file, 1), nullptr);
   EXPECT_EQ(policy_label(file), "mine");
   EXPECT_THAT(error_of([] { make_policy("best", 1); }),
-              HasSubstr("expected beam[:W], dfs, exact, nearest, random, random-walk or a policy file, got 'best'"));
+              HasSubstr("expected beam[:W], guided[:W[:FILE]], dfs, exact, explorer, nearest, random, random-walk or a "
+                        "policy file, got 'best'"));
 }
 
 }  // namespace

@@ -100,7 +100,8 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
     const Optimum all = follow(complete->walk);
     ASSERT_EQ(all.visited, optimum.visited);
     ASSERT_NEAR(all.cost, optimum.cost, 1e-9);
-    for (const char* const name : {"random", "random-walk", "dfs", "nearest", "beam:2", "exact"}) {
+    for (const char* const name :
+         {"random", "random-walk", "dfs", "nearest", "beam:2", "explorer", "guided:2", "exact"}) {
       const auto policy = make_policy(name, 1);
       const EpisodeOptions options{.budget = c.budget, .action_space = ActionSpace::kNeighbours};
       const RolloutResult result = roll_out(c.world, std::span(&c.start, 1), options, *policy).front();

@@ -53,7 +53,7 @@ def test_evaluate_takes_ones_own_maps(run, tmp_path):
     assert [row["budget"] for row in result["rows"]] == [11, 2, 20]
     assert all(row["paper"] is None for row in result["rows"])
     default = evaluate(run, "--maps", tmp_path / "other.txt")
-    assert [line["policy"] for line in default["overall"]] == ["random", "dfs", "nearest", "exact"]
+    assert [line["policy"] for line in default["overall"]] == ["random", "dfs", "nearest", "explorer", "guided", "exact"]
     assert default["rows"][0]["episodes"] == 30
     single = evaluate(run, "--maps", tmp_path / "other.txt", "--policy", "nearest", "--episodes", "1")["rows"][0]
     assert single["std"] is None and single["ci95"] is None
@@ -65,7 +65,7 @@ def test_large_maps_have_no_optimum(run, tmp_path):
     rows = {row["policy"]: row for row in result["rows"]}
     assert all(row["optimum"] is None for row in rows.values())
     assert rows["exact"]["mean"] is None and rows["nearest"]["mean"] > 50
-    assert result["overall"][3] == {"policy": "exact", "maps": 0, "mean": None, "ratio_to_optimum": None}
+    assert result["overall"][-1] == {"policy": "exact", "maps": 0, "mean": None, "ratio_to_optimum": None}
 
 
 def test_inspect_shows_tensors_features_and_q_values(run, trained):
@@ -150,7 +150,7 @@ def bad_inputs(tmp_path, policy):
         (["plan", "paper:a", "--budget", "9", "--start", "99"], "start outside the map"),
         (["plan", "paper:a", "--budget", "9", "--policy", "beam:0"], "bad beam width"),
         (["plan", "paper:a", "--budget", "9", "--policy", "beam:many"], "bad beam width"),
-        (["plan", "paper:a", "--budget", "9", "--policy", "dfs", "--time-limit", "1"], "a time limit is for policies that plan"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "dfs", "--time-limit", "1"], "a time limit is for policies that search"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "-1"], "bad time limit"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "nan"], "bad time limit"),
         (["plan", tmp_path / "cost.json", "--budget", "9"], "links[0]: bad \"weight\""),
@@ -176,6 +176,19 @@ def bad_inputs(tmp_path, policy):
         (["train", "--episodes", "0", "--out", tmp_path / "new"], "--episodes"),
         (["train", "--preset", "best", "--out", tmp_path / "new"], "--preset"),
         (["train", "--swiftly"], "--swiftly"),
+        (["train", "--rounds", "0", "--out", tmp_path / "new"], "--rounds"),
+        (["train", "--teacher", "me", "--out", tmp_path / "new"], "--teacher"),
+        (["train", "--rounds", "3", "--episodes", "3", "--out", tmp_path / "new"], "--rounds is no option of the preset paper"),
+        (["train", "--preset", "explorer", "--maps", "paper:a", "--out", tmp_path / "new"], "--maps is no option of the preset explorer"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "guided:0"], "bad beam width"),
+        (["plan", "paper:a", "--budget", "9", "--policy", f"guided:4:{policy}"], "policy of another network"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "guided:4:nothing"], "cannot read the file"),
+        (["plan", "paper:a", "--budget", "-1"], "bad budget"),
+        (["maps", "generate", "maze", "--size", "8", "--out", tmp_path / "new"], "an odd number of cells a side"),
+        (["maps", "generate", "cave", "--size", "8", "--out", tmp_path / "new"], "no such family of worlds"),
+        (["maps", "generate", "maze", "--size", "9", "--weighted", "--out", tmp_path / "new"], "neither costs nor directions"),
+        (["maps", "generate", "maze", "--size", "9", "--out", policy.parent], "the folder is not empty"),
+        (["maps", "generate", "maze", "--size", "9", "--split", "exam"], "--split"),
         (["train", "--budget", "70000", "--out", tmp_path / "new"], "budget out of range"),
         (["train", "--maps", tmp_path / "strange.txt", "--out", tmp_path / "new"], "strange character"),
         (["train", "--out", tmp_path / "file" / "run"], "cannot create the folder"),
@@ -336,3 +349,58 @@ def test_plan_uses_the_time_it_is_given(run, tmp_path):
     assert longer["visited"] > quick["visited"] or longer["optimal"]
     exact = plan(run, tmp_path / "large.txt", "--budget", "1x", "--policy", "exact", "--time-limit", "0.1")
     assert exact["visited"] >= quick["visited"]
+
+
+def test_generated_worlds_are_read_back_and_the_same_again(run, tmp_path):
+    for name, arguments in {
+        "mazes": ["maze", "--size", "7", "--count", "3"],
+        "graphs": ["geometric", "--size", "30", "--weighted", "--directed", "--count", "2", "--split", "test"],
+    }.items():
+        for folder in (tmp_path / name, tmp_path / f"{name} again"):
+            assert run("graphdrl", "maps", "generate", *arguments, "--out", folder).returncode == 0
+        files = sorted((tmp_path / name).iterdir())
+        assert [file.read_bytes() for file in files] == [file.read_bytes() for file in sorted((tmp_path / f"{name} again").iterdir())]
+        assert len({file.read_bytes() for file in files}) == len(files) == int(arguments[arguments.index("--count") + 1])
+        infos = json.loads(run("graphdrl", "maps", "info", tmp_path / name, "--json").stdout)
+        assert all(info["connected"] and info["weighted"] == info["directed"] == (name == "graphs") for info in infos)
+        for policy in ("explorer", "guided:4"):
+            result = plan(run, files[0], "--budget", "1x", "--policy", policy)
+            assert result["coverage"] <= result["upper_bound"] and result["cost"] <= result["budget"] * (1 + 1e-9)
+
+
+def test_an_explorer_is_trained_used_and_looked_into(run, tmp_path):
+    small = ["--largest", "5", "--walks", "20", "--updates", "5", "--states", "8", "--teacher-width", "4"]
+    process = run("graphdrl", "train", "--rounds", "2", *small, "--out", tmp_path / "run", "--json")
+    assert process.returncode == 0, process.stderr
+    result = json.loads(process.stdout)
+    assert result["rounds"] == 2 and result["states"] > 20
+    again = run("graphdrl", "train", "--config", tmp_path / "run/config.json", "--out", tmp_path / "again")
+    assert again.returncode == 0, again.stderr
+    policy = tmp_path / "run/policy.safetensors"
+    assert (tmp_path / "again/policy.safetensors").read_bytes() == policy.read_bytes()
+    assert json.loads((tmp_path / "run/metrics.jsonl").read_text().splitlines()[-1])["round"] == 2
+    for name in (policy, f"guided:3:{policy}"):
+        assert plan(run, "paper:a", "--budget", "25", "--policy", name)["visited"] >= 10
+    shown = json.loads(run("graphdrl", "inspect", policy, "--map", "paper:a", "--walk", "0,1", "--budget", "25", "--json").stdout)
+    assert [visit["node"] for visit in shown["steps"][0]["first_visits"]] == [1, 5]
+    assert "head2.weight" in run("graphdrl", "inspect", "explorer").stdout
+
+
+def test_the_explorer_is_the_default_and_guided_with_a_time_limit(run):
+    assert plan(run, "paper:a", "--budget", "25")["policy"] == "explorer"
+    assert plan(run, "paper:a", "--budget", "25", "--time-limit", "1")["policy"] == "guided"
+    assert "explorer" in {row["policy"] for row in evaluate(run, "--maps", "paper:a", "--episodes", "2")["rows"]}
+
+
+def test_odd_worlds_get_a_clear_answer(run, tmp_path):
+    (tmp_path / "one.txt").write_text(".\n")
+    (tmp_path / "two.txt").write_text(".#.\n")
+    links = [{"source": 0, "target": 0}, {"source": 0, "target": 1, "weight": 3}, {"source": 1, "target": 0, "weight": 2}]
+    (tmp_path / "loops.json").write_text(json.dumps({"nodes": [{"id": 0}, {"id": 1}], "links": links}))
+    for policy in ("explorer", "guided", "beam", "exact", "nearest"):
+        assert plan(run, tmp_path / "one.txt", "--budget", "9", "--policy", policy)["coverage"] == 100
+        assert plan(run, tmp_path / "one.txt", "--budget", "0", "--policy", policy)["walk"] == [0]
+        parts = plan(run, tmp_path / "two.txt", "--budget", "9", "--policy", policy)
+        assert parts["walk"] == [0] and parts["unreachable"] == 1 and parts["optimal"]
+        both = plan(run, tmp_path / "loops.json", "--budget", "2", "--policy", policy)
+        assert both["walk"] == [0, 1] and both["cost"] == 2

@@ -30,7 +30,7 @@ TrainOptions short_training() {
 
 void train(Trainer& trainer) {
   const Silence silence;
-  ProgressDisplay display(silence.file, 0);
+  ProgressDisplay display(silence.file, "episode", 0);
   EXPECT_TRUE(trainer.run([] { return false; }, display));
 }
 
@@ -79,7 +79,7 @@ TEST(Trainer, EndsWithTheSameBytesHoweverOftenItIsInterrupted) {
   int sessions = 0;
   for (; !finished; ++sessions) {
     const auto trainer = Trainer::resume(pieces);
-    ProgressDisplay display(silence.file, 0);
+    ProgressDisplay display(silence.file, "episode", 0);
     finished = trainer->run([steps = 0]() mutable { return steps++ == 5; }, display);
   }
   EXPECT_GT(sessions, 10);
@@ -128,7 +128,7 @@ TEST(Trainer, GoesOnFromAnOlderCheckpoint) {
   const RunDirectory run(folder / "run");
   const auto trainer = Trainer::start(options, run);
   const Silence silence;
-  ProgressDisplay display(silence.file, 0);
+  ProgressDisplay display(silence.file, "episode", 0);
   trainer->run([steps = 0]() mutable { return steps++ == 70; }, display);
   const std::string old_checkpoint = read_file(run.checkpoint());
   train(*Trainer::resume(run));

@@ -10,7 +10,7 @@ namespace graphdrl {
 namespace {
 
 struct EvaluateOptions {
-  std::vector<std::string> policies = {"random", "dfs", "nearest", "exact"};
+  std::vector<std::string> policies = {"random", "dfs", "nearest", "explorer", "guided", "exact"};
   std::vector<std::string> maps = {"paper"};
   std::string budget = "25";
   ComparisonOptions comparison;

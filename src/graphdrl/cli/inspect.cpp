@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
+#include "graphdrl/planners/explorer_policy.h"
 #include "graphdrl/planners/network_policy.h"
 
 namespace graphdrl {
@@ -15,6 +18,7 @@ struct InspectOptions {
   std::string policy;
   std::string map;
   std::vector<NodeId> walk;
+  std::string budget = "1.1x";
   bool json = false;
 };
 
@@ -55,10 +59,83 @@ Json to_json(const std::vector<InspectedStep>& steps) {
   return json;
 }
 
-std::string format_tensors() {
-  std::string text = fmt::format("{} parameters\n\n{:22}  {:12}  {:>9}\n", PaperParameters::trainable_count(), "tensor",
-                                 "shape", "values");
-  for (const TensorSpec& spec : PaperParameters::specs()) {
+// What an explorer sees and thinks at one node of the walk.
+struct ExplorerStep {
+  NodeId position;
+  std::vector<FirstVisit> visits;
+  std::vector<float> features;   // [C, 10]
+  std::vector<float> shortfall;  // [C]
+};
+
+std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const InspectOptions& options) {
+  const World world = load_one_world(options.map);
+  const double budget = Budget::parse(options.budget).cost_in(world);
+  Episode episode(world, {.budget = budget, .action_space = action_space_of(world)});
+  std::vector<ExplorerStep> steps;
+  follow_walk(episode, options.walk, [&](const Observation& observation) {
+    std::vector<std::uint64_t> visited((static_cast<std::size_t>(world.graph().node_count()) + 63) / 64);
+    for (NodeId node = 0; node < world.graph().node_count(); ++node) {
+      if (observation.visited(node)) visited[node / 64] |= std::uint64_t{1} << (node % 64);
+    }
+    ExplorerBatch batch;
+    const auto visits = guide.encoder_for(world).append(
+        {.visited = visited.data(), .position = observation.position, .spendable = observation.spendable},
+        kExplorerScope, batch);
+    ExplorerStep step{.position = observation.position,
+                      .visits = {visits.begin(), visits.end()},
+                      .features = batch.visit_x,
+                      .shortfall = {}};
+    if (!visits.empty()) guide.score(batch, step.shortfall);
+    steps.push_back(std::move(step));
+  });
+  return steps;
+}
+
+Json to_json(const std::vector<ExplorerStep>& steps) {
+  Json json = Json::array();
+  for (const ExplorerStep& step : steps) {
+    Json visits = Json::array();
+    for (std::size_t i = 0; i < step.visits.size(); ++i) {
+      const float* const row = step.features.data() + i * kExplorerVisitFeatureCount;
+      visits.push_back({{"node", step.visits[i].node},
+                        {"cost", step.visits[i].cost},
+                        {"shortfall", step.shortfall[i]},
+                        {"features", std::vector(row, row + kExplorerVisitFeatureCount)}});
+    }
+    json.push_back({{"position", step.position}, {"first_visits", visits}});
+  }
+  return json;
+}
+
+std::string format_steps(const std::vector<ExplorerStep>& steps) {
+  std::string text;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const ExplorerStep& step = steps[i];
+    text += fmt::format("\nstep {}, at node {}{}\n", i, step.position,
+                        step.visits.empty() ? ": nothing left in reach" : "");
+    if (step.visits.empty()) continue;
+    const auto best = std::min_element(step.shortfall.begin(), step.shortfall.end()) - step.shortfall.begin();
+    text += "  first visit  shortfall";
+    for (const std::string_view name : kExplorerVisitFeatures) text += fmt::format("  {}", name);
+    text += '\n';
+    for (std::size_t v = 0; v < step.visits.size(); ++v) {
+      text += fmt::format("  {:>10}{}  {:9.3f}", step.visits[v].node,
+                          std::ssize(step.visits) > 0 && best == static_cast<std::ptrdiff_t>(v) ? "*" : " ",
+                          step.shortfall[v]);
+      for (int f = 0; f < kExplorerVisitFeatureCount; ++f) {
+        text += fmt::format("  {:>{}.3g}", step.features[v * kExplorerVisitFeatureCount + f],
+                            kExplorerVisitFeatures[f].size());
+      }
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::string format_tensors(const std::vector<TensorSpec>& specs) {
+  std::string text =
+      fmt::format("{} parameters\n\n{:22}  {:12}  {:>9}\n", trainable_count(specs), "tensor", "shape", "values");
+  for (const TensorSpec& spec : specs) {
     text += fmt::format("{:22}  {:12}  {:9}{}\n", spec.name, format_shape(spec.shape), spec.size,
                         spec.trainable ? "" : "  (statistics)");
   }
@@ -89,22 +166,30 @@ std::string format_steps(const std::vector<InspectedStep>& steps) {
   return text;
 }
 
-void inspect(const InspectOptions& options) {
-  NetworkPolicy policy(read_policy_file(options.policy));
-  std::vector<InspectedStep> steps;
-  if (!options.walk.empty()) steps = inspect_walk(policy, options);
+template <typename Steps>
+void print(const std::vector<TensorSpec>& specs, const Steps& steps, const InspectOptions& options) {
   if (!options.json) {
-    print_text(format_tensors() + format_steps(steps));
+    print_text(format_tensors(specs) + format_steps(steps));
     return;
   }
   Json json;
-  json["parameters"] = PaperParameters::trainable_count();
+  json["parameters"] = trainable_count(specs);
   json["tensors"] = Json::array();
-  for (const TensorSpec& spec : PaperParameters::specs()) {
-    json["tensors"].push_back({{"name", spec.name}, {"shape", spec.shape}});
-  }
+  for (const TensorSpec& spec : specs) json["tensors"].push_back({{"name", spec.name}, {"shape", spec.shape}});
   if (!options.walk.empty()) json["steps"] = to_json(steps);
   print_json(json);
+}
+
+void inspect(const InspectOptions& options) {
+  if (options.policy == "explorer" || is_explorer_file(options.policy)) {
+    ExplorerGuide guide(options.policy == "explorer" ? builtin_explorer() : read_explorer_file(options.policy));
+    print(ExplorerParameters::specs(),
+          options.walk.empty() ? std::vector<ExplorerStep>() : inspect_walk(guide, options), options);
+    return;
+  }
+  NetworkPolicy policy(read_policy_file(options.policy));
+  print(PaperParameters::specs(), options.walk.empty() ? std::vector<InspectedStep>() : inspect_walk(policy, options),
+        options);
 }
 
 }  // namespace
@@ -113,7 +198,9 @@ void add_inspect_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("inspect", "Show what a policy file holds, and what it sees and thinks along a walk");
   const auto options = std::make_shared<InspectOptions>();
-  command->add_option("policy", options->policy, "A policy file")->required()->type_name("POLICY");
+  command->add_option("policy", options->policy, "A policy file, or explorer, the one in the program")
+      ->required()
+      ->type_name("POLICY");
   CLI::Option* const map = command->add_option("--map", options->map, "The map to walk on")->type_name("M");
   command->add_option("--walk", options->walk, "Node ids, as 0,1,1,2; a repeated id is a blocked move")
       ->delimiter(',')
@@ -121,6 +208,12 @@ void add_inspect_command(CLI::App& app) {
       ->type_name("IDS")
       ->needs(map);
   map->needs(command->get_option("--walk"));
+  command
+      ->add_option("--budget", options->budget,
+                   "What the walk may cost in all: an explorer looks at what is left of it")
+      ->type_name("B")
+      ->capture_default_str()
+      ->needs(map);
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
   command->callback([options] { inspect(*options); });

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
 #include <memory>
 
 #include "graphdrl/base/error.h"
@@ -7,8 +9,11 @@
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
+#include "graphdrl/env/world_families.h"
 #include "graphdrl/graph/search.h"
+#include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/node_link.h"
 #include "graphdrl/report/map_drawing.h"
 
 namespace graphdrl {
@@ -19,6 +24,14 @@ struct MapsOptions {
   std::vector<NodeId> walk;
   std::string svg;
   bool json = false;
+};
+
+struct GenerateOptions {
+  WorldSpec spec{.family = {}, .size = 0};
+  int count = 10;
+  std::string split;
+  std::uint64_t seed = 1;
+  std::string out;
 };
 
 void show_info(const MapsOptions& options) {
@@ -71,10 +84,50 @@ void show_map(const MapsOptions& options) {
   print_text(text);
 }
 
+const std::map<std::string, Split> kSplits = {
+    {"train", Split::kTrain}, {"validation", Split::kValidation}, {"test", Split::kTest}};
+
+// The file of a world: a grid as text, a graph as node-link JSON.
+std::string format_world(const World& world) {
+  if (world.is_grid()) return format_ascii_map(*world.map());
+  return format_node_link({.graph = world.graph(), .blocked = world.blocked(), .labels = {}});
+}
+
+void generate_maps(const GenerateOptions& options) {
+  const WorldSpec spec = options.spec;
+  const std::filesystem::path folder = options.out.empty() ? spec.name() : options.out;
+  std::error_code error;
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error)) {
+    throw Error({.what = "the folder is not empty", .expected = "a new one", .where = folder.string()});
+  }
+  const auto split = kSplits.find(options.split);
+  // The first one shows whether there are such worlds, before anything is made.
+  const auto world_at = [&](int index) {
+    if (split != kSplits.end()) return split_world(spec, split->second, index);
+    Rng rng(derive_seed(options.seed, 0, static_cast<std::uint64_t>(index)));
+    return random_world(spec, rng);
+  };
+  for (int index = 0; index < options.count; ++index) {
+    const World world = world_at(index);
+    if (index == 0) prepare_folder(folder);
+    write_file(folder / fmt::format("{}-{:04}.{}", spec.name(), index, world.is_grid() ? "txt" : "json"),
+               format_world(world));
+  }
+  print_text(fmt::format("Wrote {} world{} to {}\n", options.count, options.count == 1 ? "" : "s", folder.string()));
+}
+
+std::string describe_families() {
+  std::string text = "Families; sizes are cells a side or nodes:\n";
+  for (const WorldFamily& family : world_families()) {
+    text += fmt::format("  {:16} {:6} {}\n", family.name, family.grid ? "cells" : "nodes", family.description);
+  }
+  return text;
+}
+
 }  // namespace
 
 void add_maps_command(CLI::App& app) {
-  CLI::App* const maps = app.add_subcommand("maps", "Look at maps");
+  CLI::App* const maps = app.add_subcommand("maps", "Look at maps, and make random ones");
   maps->require_subcommand(1);
   const auto options = std::make_shared<MapsOptions>();
   const auto add = [&](const std::string& name, const std::string& description) {
@@ -95,6 +148,29 @@ void add_maps_command(CLI::App& app) {
       ->type_name("IDS");
   show->add_option("--svg", options->svg, "Also write the picture to this file")->type_name("FILE");
   show->callback([options] { show_map(*options); });
+
+  CLI::App* const generate = maps->add_subcommand("generate", "Make random worlds, each family with its own ranges");
+  const auto making = std::make_shared<GenerateOptions>();
+  generate->add_option("family", making->spec.family, "The family of worlds; see below")
+      ->required()
+      ->type_name("FAMILY");
+  generate->add_option("--size", making->spec.size, "Cells a side of a grid, else nodes")->required()->type_name("N");
+  generate->add_option("--count", making->count, "How many")->check(CLI::Range(1, 100'000))->capture_default_str();
+  generate->add_flag("--weighted", making->spec.weighted, "Edges of different costs; graphs only");
+  generate->add_flag("--directed", making->spec.directed, "Three edges in ten lead one way only; graphs only");
+  CLI::Option* const seed = generate->add_option("--seed", making->seed, "The same seed gives the same worlds")
+                                ->check(CLI::NonNegativeNumber)
+                                ->capture_default_str();
+  generate
+      ->add_option(
+          "--split", making->split,
+          "Instead: the first worlds of a frozen split, train, validation or test; the explorer saw none of test")
+      ->check(CLI::IsMember(kSplits))
+      ->excludes(seed);
+  generate->add_option("--out", making->out, "The folder, new or empty (default: named after the family)")
+      ->check(not_empty());
+  generate->footer(describe_families());
+  generate->callback([making] { generate_maps(*making); });
 }
 
 }  // namespace graphdrl

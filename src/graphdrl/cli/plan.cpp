@@ -25,7 +25,7 @@ struct PlanOptions {
   std::string map;
   std::string budget;
   std::string start;
-  std::string policy = "beam";
+  std::string policy = "explorer";
   std::optional<double> time_limit_s;
   std::uint64_t seed = 1;
   bool json = false;
@@ -185,7 +185,10 @@ void add_plan_command(CLI::App& app) {
   command->add_option("--start", options->start, "A node id, a label, or row,col; the default is the first valid node")
       ->check(not_empty())
       ->type_name("S");
-  command->add_option("--policy", options->policy, policy_names())->type_name("P")->capture_default_str();
+  CLI::Option* const policy =
+      command->add_option("--policy", options->policy, policy_names() + "; guided with a time limit")
+          ->type_name("P")
+          ->capture_default_str();
   command
       ->add_option("--time-limit", options->time_limit_s,
                    "Seconds for a better plan: wider and wider beams, or an exact search with a beam to fall back on")
@@ -195,7 +198,10 @@ void add_plan_command(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
-  command->callback([options] { plan(*options); });
+  command->callback([options, policy] {
+    if (options->time_limit_s && policy->count() == 0) options->policy = "guided";
+    plan(*options);
+  });
 }
 
 }  // namespace graphdrl

@@ -11,7 +11,9 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/train/explorer_trainer.h"
 #include "graphdrl/train/learning_step_bench.h"
+#include "graphdrl/train/option_table.h"
 #include "graphdrl/train/trainer.h"
 
 namespace graphdrl {
@@ -60,7 +62,10 @@ class ConfigReader : public CLI::ConfigTOML {
 };
 
 struct TrainCommand {
-  TrainOptions options;
+  ExplorerOptions explorer;
+  TrainOptions paper;
+  std::string preset = ExplorerOptions{}.preset;
+  std::uint64_t seed = 1;
   std::string out;
   std::string resume;
   bool json = false;
@@ -79,35 +84,85 @@ void add_field(CLI::App& app, const std::string& flag, T& value, const char* hel
   app.add_option(flag, value, help)->capture_default_str();
 }
 
-std::unique_ptr<Trainer> make_trainer(const TrainCommand& command) {
-  if (!command.resume.empty()) return Trainer::resume(RunDirectory(command.resume));
-  const std::string out = command.out.empty() ? "runs/" + command.options.preset : command.out;
-  return Trainer::start(command.options, RunDirectory(out));
-}
-
-void train(const TrainCommand& command) {
-  const std::unique_ptr<Trainer> trainer = make_trainer(command);
-  const std::string run = trainer->run_directory().path().string();
+// Trains to the end, or until a signal comes; either trainer. `count` are the rounds or episodes done.
+template <typename T, typename Count>
+void train(T& trainer, const TrainCommand& command, const std::string& unit, std::int64_t all, const Count& count) {
+  const std::string run = trainer.run_directory().path().string();
   catch_signals();
-  ProgressDisplay display(stderr, trainer->progress().episode);
-  const bool finished = trainer->run([] { return stop_signal != 0; }, display);
-  const TrainingProgress& progress = trainer->progress();
-  if (!finished) {
+  ProgressDisplay display(stderr, unit, count());
+  if (!trainer.run([] { return stop_signal != 0; }, display)) {
     print_diagnostic(
-        fmt::format("Stopped after {} of {} episodes; everything is saved. To go on:\n  graphdrl train --resume {}\n",
-                    progress.episode, trainer->options().episodes, run));
+        fmt::format("Stopped after {} of {} {}s; everything is saved. To go on:\n  graphdrl train --resume {}\n",
+                    count(), all, unit, run));
     throw CLI::RuntimeError(128 + stop_signal);
   }
-  const std::string policy = trainer->run_directory().policy().string();
+  const std::string policy = trainer.run_directory().policy().string();
+  const auto [steps, steps_name, elapsed_s] = [&] {
+    if constexpr (std::is_same_v<T, Trainer>) {
+      return std::tuple(trainer.progress().steps, "steps", trainer.progress().elapsed_s);
+    } else {
+      return std::tuple(trainer.progress().states, "states", trainer.progress().elapsed_s);
+    }
+  }();
   if (command.json) {
-    print_json({{"run", run},
-                {"episodes", progress.episode},
-                {"steps", progress.steps},
-                {"elapsed_s", progress.elapsed_s},
-                {"policy", policy}});
+    print_json(
+        {{"run", run}, {unit + 's', count()}, {steps_name, steps}, {"elapsed_s", elapsed_s}, {"policy", policy}});
   } else {
-    print_text(fmt::format("Trained {} episodes, {} steps, in {:.0f} s. The policy: {}\n", progress.episode,
-                           progress.steps, progress.elapsed_s, policy));
+    print_text(fmt::format("Trained {} {}s, {} {}, in {:.0f} s. The policy: {}\n", count(), unit, steps, steps_name,
+                           elapsed_s, policy));
+  }
+}
+
+void train(Trainer& trainer, const TrainCommand& command) {
+  train(trainer, command, "episode", trainer.options().episodes, [&] { return trainer.progress().episode; });
+}
+
+void train(ExplorerTrainer& trainer, const TrainCommand& command) {
+  train(trainer, command, "round", trainer.options().rounds, [&] { return trainer.progress().round; });
+}
+
+void train(TrainCommand& command) {
+  if (!command.resume.empty()) {
+    const RunDirectory run(command.resume);
+    if (preset_of(run.config()) == command.paper.preset) return train(*Trainer::resume(run), command);
+    return train(*ExplorerTrainer::resume(run), command);
+  }
+  const RunDirectory run(command.out.empty() ? "runs/" + command.preset : command.out);
+  if (command.preset == command.paper.preset) {
+    command.paper.seed = command.seed;
+    return train(*Trainer::start(command.paper, run), command);
+  }
+  check_choice("--preset", command.preset, {command.explorer.preset, command.paper.preset});
+  command.explorer.seed = command.seed;
+  train(*ExplorerTrainer::start(command.explorer, run), command);
+}
+
+// The options of a preset that the others do not have.
+template <typename Table, typename Options>
+std::vector<CLI::Option*> add_preset_options(CLI::App& app, const Table& for_each, Options& options) {
+  std::vector<CLI::Option*> added;
+  for_each(options, [&](const char* key, auto& value, const char* help) {
+    const std::string flag = "--" + kebab_case(key);
+    if (flag == "--preset" || flag == "--seed") return;
+    add_field(app, flag, value, help);
+    added.push_back(app.get_option(flag)->group("Of the preset " + options.preset));
+  });
+  return added;
+}
+
+// An option of the preset paper alone chooses that preset, where none is named. Throws Error on options of another one.
+void choose_preset(TrainCommand& command, bool named, const std::vector<CLI::Option*>& of_explorer,
+                   const std::vector<CLI::Option*>& of_paper) {
+  const auto given = [](const std::vector<CLI::Option*>& options) {
+    const auto found =
+        std::find_if(options.begin(), options.end(), [](const CLI::Option* option) { return option->count() > 0; });
+    return found == options.end() ? nullptr : *found;
+  };
+  if (!named && given(of_paper) != nullptr) command.preset = command.paper.preset;
+  const bool paper = command.preset == command.paper.preset;
+  if (const CLI::Option* const other = given(paper ? of_explorer : of_paper)) {
+    throw Error({.what = fmt::format("{} is no option of the preset {}", other->get_name(), command.preset),
+                 .expected = fmt::format("--preset {}", paper ? command.explorer.preset : command.paper.preset)});
   }
 }
 
@@ -116,9 +171,15 @@ int main_program(int argc, char** argv) {
       "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
       "graphdrl train"};
   const auto command = std::make_shared<TrainCommand>();
-  for_each_field(command->options, [&](const char* key, auto& value, const char* help) {
-    add_field(app, "--" + kebab_case(key), value, help);
+  for_each_explorer_field(command->explorer, [&](const char* key, auto&, const char* help) {
+    if (key == std::string_view("preset")) add_field(app, "--preset", command->preset, help);
+    if (key == std::string_view("seed")) add_field(app, "--seed", command->seed, help);
   });
+  const CLI::Option* const preset = app.get_option("--preset");
+  const auto of_explorer = add_preset_options(
+      app, [](auto& options, const auto& field) { for_each_explorer_field(options, field); }, command->explorer);
+  const auto of_paper = add_preset_options(
+      app, [](auto& options, const auto& field) { for_each_field(options, field); }, command->paper);
   app.add_option("--out", command->out, "The run directory, new (default: runs/PRESET)")
       ->type_name("RUN")
       ->check(not_empty());
@@ -136,7 +197,7 @@ int main_program(int argc, char** argv) {
   // What `graphdrl bench` runs this program for.
   bool bench = false;
   app.add_flag("--bench-learning-step", bench)->group("");
-  app.callback([command, new_run, resume, &bench] {
+  app.callback([command, preset, new_run, of_explorer, of_paper, resume, &bench] {
     if (bench) {
       const LearningStepTime time = time_learning_step(threads());
       print_json({{"learning_step_ms", time.step_ms}, {"products_ms", time.products_ms}, {"sgemm_ms", time.sgemm_ms}});
@@ -149,6 +210,7 @@ int main_program(int argc, char** argv) {
                      .where = command->resume});
       }
     }
+    choose_preset(*command, preset->count() > 0, of_explorer, of_paper);
     train(*command);
   });
   return run_program(app, argc, argv);

@@ -38,6 +38,10 @@ class Graph {
   // The same nodes, without the edges that touch a dropped one. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;
 
+  // The given nodes, numbered in the order given, and the edges among them. REQUIRES: none is given twice. number:
+  // memory for the numbering, [N], kNoNode everywhere before and after.
+  Graph induced(std::span<const NodeId> nodes, std::vector<NodeId>& number) const;
+
   // The same graph with every edge turned round; an undirected graph is its own.
   Graph reversed() const;
 

@@ -7,16 +7,12 @@
 
 #include <array>
 #include <filesystem>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "graphdrl/base/random.h"
-#include "graphdrl/io/safetensors.h"
-#include "graphdrl/nn/gated_graph_conv.h"
 #include "graphdrl/nn/graph_batch.h"
-#include "graphdrl/nn/layers.h"
+#include "graphdrl/nn/parameters.h"
 
 namespace graphdrl {
 
@@ -29,46 +25,30 @@ inline constexpr LinearShape kFc2Shape = {kHiddenWidth, kActionCount};
 inline constexpr double kBatchNormEpsilon = 1e-5;
 inline constexpr double kBatchNormMomentum = 0.1;
 
-// One tensor of the network, and where it stands in the flat buffer of all of them.
-struct TensorSpec {
-  std::string name;  // PyTorch's: "conv1.rnn.weight_ih"
-  Shape shape;
-  bool trainable;  // batch norm's running statistics are not
-  std::size_t offset;
-  std::size_t size;
-};
-
-// All tensors of the network in one flat buffer, the trainable ones first, so that an optimiser can take them as one.
-class PaperParameters {
+class PaperParameters : public ParameterBuffer {
  public:
-  // Initialised as PyTorch and PyTorch Geometric do: uniform within ±1/√fan-in for Linear, ±1/√D for a gated
-  // convolution; batch norm 1 and 0, its running statistics 0 and 1.
+  // Initialised as PyTorch and PyTorch Geometric do; batch norm 1 and 0, its running statistics 0 and 1.
   explicit PaperParameters(Rng& rng);
 
   // All values 0: a place for gradients, or to be filled.
-  PaperParameters();
+  PaperParameters() : ParameterBuffer(specs()) {}
 
-  static const std::vector<TensorSpec>& specs();  // in order of offset
-  static std::size_t trainable_count();           // 240,678
+  static const std::vector<TensorSpec>& specs();
+  static std::size_t trainable_count() { return graphdrl::trainable_count(specs()); }  // 240,678
 
-  std::span<float> values() { return values_; }
-  std::span<const float> values() const { return values_; }
-  float* tensor(const std::string& name);
-  const float* tensor(const std::string& name) const;
+  using ParameterBuffer::conv;
   GatedGraphConvTensors<float> conv(int layer);  // layer: 1 to 3
   GatedGraphConvTensors<const float> conv(int layer) const;
-  LinearTensors<float> linear(const std::string& name);  // "fc1", "fc2"
-  LinearTensors<const float> linear(const std::string& name) const;
 
-  // The tensors under PyTorch's names, with `prefix` before each; for files. The values stay this object's.
-  std::vector<TensorView> views(const std::string& prefix = "") const;
-  static PaperParameters from_file(const Safetensors& file, const std::string& prefix = "");
+  static PaperParameters from_file(const Safetensors& file, const std::string& prefix = "") {
+    return PaperParameters(ParameterBuffer(specs(), file, prefix));
+  }
 
  private:
-  std::vector<float> values_;
+  explicit PaperParameters(ParameterBuffer buffer) : ParameterBuffer(std::move(buffer)) {}
 };
 
-// A policy file: the parameters and, as metadata, the network's full description. Throws Error.
+// Policy files of this network. Throw Error.
 void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters);
 PaperParameters read_policy_file(const std::filesystem::path& path);
 

@@ -13,16 +13,11 @@
 namespace graphdrl {
 namespace {
 
-// What an unvisited node is likely to cost on top of one step, by its unvisited neighbours: one without any must be
-// left again by the way one came; one with a single neighbour is a dead end. In mean edges; of
-// fourteen pairs tried, the one that visits most on random 11×11 mazes at 1.0x.
-constexpr double kIsolatedPenalty = 4;
-constexpr double kDeadEndPenalty = 2;
 constexpr std::uint64_t kHashSeed = 1;
-
-double penalty(int unvisited_neighbours) {
-  return unvisited_neighbours == 0 ? kIsolatedPenalty : unvisited_neighbours == 1 ? kDeadEndPenalty : 0.0;
-}
+// Full penalties serve mazes best, a quarter of them graphs without dead ends and edges with costs: half of a beam is
+// kept by each.
+constexpr double kLightShare = 0.25;
+constexpr int kBlockNodes = 8192;  // of states scored at once
 
 // A partial walk. Its visited nodes are a row of words in the level's memory.
 struct Partial {
@@ -39,23 +34,25 @@ struct Candidate {
   NodeId node;
   double spent;
   double penalties;
-  double rank;  // lower is better
+  double rank;         // lower is better
+  double second_rank;  // by another measure
   std::uint64_t hash;
 };
 
-struct FirstVisit {
+struct Link {
   NodeId node;
   std::int64_t before;  // place of the first visit before it
 };
 
 class Beam {
  public:
-  Beam(const SearchStart& start, const BeamOptions& options)
+  Beam(const SearchStart& start, const BeamOptions& options, ExplorerGuide* guide)
       : world_(*start.world),
         open_(world_.open()),
         into_(open_.reversed()),
         start_(start),
         width_(options.width),
+        guide_(guide),
         words_((static_cast<std::size_t>(open_.node_count()) + 63) / 64),
         unit_(open_.mean_cost()),
         nearest_(open_) {
@@ -73,13 +70,11 @@ class Beam {
   const std::uint64_t* visited_of(int partial) const { return visited_.data() + partial * words_; }
   static bool has(const std::uint64_t* set, NodeId node) { return (set[node / 64] >> (node % 64) & 1) != 0; }
 
-  int unvisited_neighbours(const std::uint64_t* visited, NodeId node) const {
-    int count = 0;
-    for (const NodeId next : open_.neighbours(node)) count += !has(visited, next);
-    return count;
-  }
-
+  // The candidates of every partial walk of the level; false where the time is up.
+  bool expand_level(Deadline deadline);
   void expand(int parent);
+  void expand_guided(int first, int count);
+  void add(const Candidate& candidate);
   void keep_best();
   std::vector<NodeId> unroll(std::int64_t trail) const;
 
@@ -88,6 +83,7 @@ class Beam {
   Graph into_;  // open_ turned round
   const SearchStart& start_;
   int width_;
+  ExplorerGuide* guide_;  // null where partial walks are ranked by penalties
   bool dropped_ = false;
   std::size_t words_;
   double unit_;
@@ -98,10 +94,14 @@ class Beam {
   std::vector<Partial> level_;
   std::vector<std::uint64_t> visited_;  // [level_.size(), words_]
   std::vector<Candidate> candidates_;
-  std::vector<FirstVisit> trail_;
+  std::vector<Link> trail_;
   std::unordered_map<std::uint64_t, std::size_t> best_of_state_;
   std::vector<Partial> next_level_;
   std::vector<std::uint64_t> next_visited_;
+  ExplorerBatch batch_;
+  std::vector<NodeId> targets_;
+  std::vector<double> costs_;
+  std::vector<float> shortfall_;
 };
 
 std::optional<Plan> Beam::run(Deadline deadline) {
@@ -113,7 +113,10 @@ std::optional<Plan> Beam::run(Deadline deadline) {
     root.hash ^= visit_hash_[node];
   }
   for (const NodeId node : world_.valid_nodes()) {
-    if (!start_.visited[node]) root.penalties += penalty(unvisited_neighbours(visited_.data(), node));
+    if (start_.visited[node]) continue;
+    int neighbours = 0;
+    for (const NodeId next : open_.neighbours(node)) neighbours += !start_.visited[next];
+    root.penalties += leftover_penalty(neighbours);
   }
   level_.assign(1, root);
   std::int64_t best = -1;
@@ -124,13 +127,25 @@ std::optional<Plan> Beam::run(Deadline deadline) {
            })->trail;
     candidates_.clear();
     best_of_state_.clear();
-    for (int parent = 0; parent < std::ssize(level_); ++parent) {
-      if (parent % 64 == 0 && passed(deadline)) return std::nullopt;
-      expand(parent);
-    }
+    if (!expand_level(deadline)) return std::nullopt;
     keep_best();
   }
   return Plan{.walk = unroll(best), .optimal = !dropped_};
+}
+
+bool Beam::expand_level(Deadline deadline) {
+  const int count = static_cast<int>(level_.size());
+  const int block = guide_ == nullptr ? 64 : std::max(1, kBlockNodes / world_.valid_count());
+  for (int first = 0; first < count; first += block) {
+    if (passed(deadline)) return false;
+    const int end = std::min(first + block, count);
+    if (guide_ != nullptr) {
+      expand_guided(first, end - first);
+    } else {
+      for (int parent = first; parent < end; ++parent) expand(parent);
+    }
+  }
+  return true;
 }
 
 void Beam::expand(int parent) {
@@ -139,39 +154,81 @@ void Beam::expand(int parent) {
   const std::uint64_t* const visited = visited_of(parent);
   nearest_.run(from.position, start_.limit() - from.spent, [&](NodeId node, double cost) {
     if (has(visited, node)) return Next::kThrough;
-    Candidate candidate{.parent = parent,
-                        .node = node,
-                        .spent = from.spent + cost,
-                        .penalties = from.penalties - penalty(unvisited_neighbours(visited, node)),
-                        .rank = 0,
-                        .hash = from.hash ^ visit_hash_[node]};
-    for (const NodeId other : into_.neighbours(node)) {
-      if (has(visited, other)) continue;
-      const int neighbours = unvisited_neighbours(visited, other);
-      candidate.penalties += penalty(neighbours - 1) - penalty(neighbours);
-    }
-    candidate.rank = candidate.spent + unit_ * candidate.penalties;
-    const auto [known, fresh] = best_of_state_.try_emplace(candidate.hash ^ position_hash_[node], candidates_.size());
-    if (fresh) {
-      candidates_.push_back(candidate);
-    } else if (candidate.spent < candidates_[known->second].spent) {
-      candidates_[known->second] = candidate;
-    }
+    const double spent = from.spent + cost;
+    const double penalties = from.penalties + change_of_penalties(open_, into_, visited, node);
+    add({.parent = parent,
+         .node = node,
+         .spent = spent,
+         .penalties = penalties,
+         .rank = spent + unit_ * penalties,
+         .second_rank = spent + kLightShare * unit_ * penalties,
+         .hash = from.hash ^ visit_hash_[node]});
     return Next::kPast;
   });
 }
 
+void Beam::expand_guided(int first, int count) {
+  batch_.clear();
+  targets_.clear();
+  costs_.clear();
+  ExplorerEncoder& encoder = guide_->encoder_for(world_);
+  for (int parent = first; parent < first + count; ++parent) {
+    const Partial& from = level_[parent];
+    const auto visits = encoder.append(
+        {.visited = visited_of(parent), .position = from.position, .spendable = start_.limit() - from.spent},
+        kExplorerScope, batch_);
+    dropped_ = dropped_ || encoder.overlooked();
+    for (const FirstVisit& visit : visits) {
+      targets_.push_back(visit.node);
+      costs_.push_back(visit.cost);
+    }
+  }
+  if (targets_.empty()) return;
+  guide_->score(batch_, shortfall_);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const int parent = first + batch_.state[i];
+    const double spent = level_[parent].spent + costs_[i];
+    const double penalties =
+        level_[parent].penalties + change_of_penalties(open_, into_, visited_of(parent), targets_[i]);
+    add({.parent = parent,
+         .node = targets_[i],
+         .spent = spent,
+         .penalties = penalties,
+         .rank = double{shortfall_[i]} - batch_.ceiling[batch_.state[i]],
+         .second_rank = spent + unit_ * penalties,
+         .hash = level_[parent].hash ^ visit_hash_[targets_[i]]});
+  }
+}
+
+// Of candidates that lead to the same state, only the cheapest stays.
+void Beam::add(const Candidate& candidate) {
+  const auto [known, fresh] =
+      best_of_state_.try_emplace(candidate.hash ^ position_hash_[candidate.node], candidates_.size());
+  if (fresh) {
+    candidates_.push_back(candidate);
+  } else if (candidate.spent < candidates_[known->second].spent) {
+    candidates_[known->second] = candidate;
+  }
+}
+
 void Beam::keep_best() {
-  const auto better = [](const Candidate& a, const Candidate& b) {
-    if (a.rank != b.rank) return a.rank < b.rank;
-    return a.parent != b.parent ? a.parent < b.parent : a.node < b.node;
+  const auto by = [](double Candidate::*rank) {
+    return [rank](const Candidate& a, const Candidate& b) {
+      if (a.*rank != b.*rank) return a.*rank < b.*rank;
+      return a.parent != b.parent ? a.parent < b.parent : a.node < b.node;
+    };
   };
   const std::size_t kept = std::min(candidates_.size(), static_cast<std::size_t>(width_));
-  dropped_ = dropped_ || kept < candidates_.size();
-  std::nth_element(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(kept), candidates_.end(),
-                   better);
-  candidates_.resize(kept);
-  std::sort(candidates_.begin(), candidates_.end(), better);
+  if (kept < candidates_.size()) {
+    dropped_ = true;
+    // One half by either rank: no measure is right everywhere.
+    const auto half = candidates_.begin() + static_cast<std::ptrdiff_t>((kept + 1) / 2);
+    const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(kept);
+    std::nth_element(candidates_.begin(), half, candidates_.end(), by(&Candidate::rank));
+    if (half < end) std::nth_element(half, end, candidates_.end(), by(&Candidate::second_rank));
+    candidates_.resize(kept);
+  }
+  std::sort(candidates_.begin(), candidates_.end(), by(&Candidate::rank));
   next_level_.clear();
   next_visited_.resize(kept * words_);
   for (std::size_t i = 0; i < kept; ++i) {
@@ -210,38 +267,45 @@ std::vector<NodeId> Beam::unroll(std::int64_t trail) const {
 // some candidates each.
 double bytes_needed(const World& world, int width) {
   const double levels = world.valid_count();
-  return width * (levels * sizeof(FirstVisit) + 2 * (levels / 8 + sizeof(Partial)) + 8 * sizeof(Candidate));
+  return width * (levels * sizeof(Link) + 2 * (levels / 8 + sizeof(Partial)) + 8 * sizeof(Candidate));
 }
 
 }  // namespace
 
-std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline) {
+std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline,
+                              ExplorerGuide* guide) {
   if (bytes_needed(*start.world, options.width) > kMaxBeamBytes) {
     throw Error({.what = "the beam is too wide for this world",
                  .expected = fmt::format("a width up to {:.0f}", kMaxBeamBytes / bytes_needed(*start.world, 1)),
                  .got = fmt::format("{}", options.width),
                  .where = start.world->name()});
   }
-  return Beam(start, options).run(deadline);
+  return Beam(start, options, guide).run(deadline);
+}
+
+bool BeamPolicy::improve(const SearchStart& start, int width, Deadline deadline, std::optional<Plan>& best) {
+  const auto take = [&](std::optional<Plan> next) {
+    if (!next) return false;
+    const int gain = best ? visited_after(start, next->walk) - visited_after(start, best->walk) : 1;
+    const auto cheaper = [&] { return walk_cost(*start.world, next->walk) < walk_cost(*start.world, best->walk); };
+    if (gain > 0 || (gain == 0 && (next->optimal || cheaper()))) best = std::move(next);
+    return true;
+  };
+  if (!take(beam_plan(start, {.width = width}, deadline))) return false;
+  return !guide_ || best->optimal || take(beam_plan(start, {.width = width}, deadline, &*guide_));
 }
 
 Plan BeamPolicy::plan(const SearchStart& start) {
   const Deadline deadline = deadline_after(limit_);
-  BeamOptions options = options_;
-  Plan best = *beam_plan(start, options);
-  if (!deadline) return best;
-  const int most = max_visited(start);
-  for (;;) {
-    best.optimal = best.optimal || visited_after(start, best.walk) >= most;
-    options.width *= 2;
-    const bool too_wide = options.width > kMaxBeamWidth || bytes_needed(*start.world, options.width) > kMaxBeamBytes;
-    if (best.optimal || too_wide) return best;
-    std::optional<Plan> next = beam_plan(start, options, deadline);
-    if (!next) return best;
-    const int gain = visited_after(start, next->walk) - visited_after(start, best.walk);
-    const bool cheaper = walk_cost(*start.world, next->walk) < walk_cost(*start.world, best.walk);
-    if (gain > 0 || (gain == 0 && (cheaper || next->optimal))) best = *std::move(next);
+  std::optional<Plan> best;
+  improve(start, options_.width, {}, best);
+  const int most = limit_ ? max_visited(start) : 0;
+  for (int width = 2 * options_.width; limit_; width *= 2) {
+    best->optimal = best->optimal || visited_after(start, best->walk) >= most;
+    const bool too_wide = width > kMaxBeamWidth || bytes_needed(*start.world, width) > kMaxBeamBytes;
+    if (best->optimal || too_wide || !improve(start, width, deadline, best)) break;
   }
+  return *std::move(best);
 }
 
 }  // namespace graphdrl

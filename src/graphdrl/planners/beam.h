@@ -2,6 +2,7 @@
 // through visited ground. Level k holds the best partial walks of k first visits.
 #pragma once
 
+#include "graphdrl/planners/explorer_policy.h"
 #include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
@@ -13,10 +14,13 @@ struct BeamOptions {
 inline constexpr int kMaxBeamWidth = 1'000'000;
 inline constexpr double kMaxBeamBytes = 4e9;
 
-// The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. Optimal
-// where no partial walk had to be dropped. Deterministic. Empty where the deadline passes first. Throws Error where the
-// beam would need more than kMaxBeamBytes.
-std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline = {});
+// The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. Half of a
+// level is kept by what was spent and penalties for what is left over, the other half by the same with lighter
+// penalties, or, with a guide, by what the network says will be visited in the end. Optimal where no partial walk had
+// to be dropped. Deterministic. Empty where the deadline passes first. Throws Error where the beam would need more than
+// kMaxBeamBytes.
+std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline = {},
+                              ExplorerGuide* guide = nullptr);
 
 // With a time limit, searches again and again with twice the width, until the time is up, a walk is known to be optimal
 // or memory would run short; the best walk counts. The first search, of the width given, is always finished.
@@ -24,11 +28,20 @@ class BeamPolicy final : public PlanPolicy {
  public:
   explicit BeamPolicy(BeamOptions options, TimeLimit limit = {}) : options_(options), limit_(limit) {}
 
+  // Guided: at every width a beam without the guide is searched first, at a small part of the cost; the better walk
+  // counts.
+  BeamPolicy(BeamOptions options, SharedExplorer guide, TimeLimit limit = {})
+      : options_(options), limit_(limit), guide_(std::in_place, std::move(guide)) {}
+
   Plan plan(const SearchStart& start) override;
 
  private:
+  // Searches with this width, by each way of ranking; `best` becomes the better walk.
+  bool improve(const SearchStart& start, int width, Deadline deadline, std::optional<Plan>& best);
+
   BeamOptions options_;
   TimeLimit limit_;
+  std::optional<ExplorerGuide> guide_;
 };
 
 }  // namespace graphdrl

@@ -13,6 +13,7 @@
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/exact.h"
+#include "graphdrl/planners/explorer_policy.h"
 #include "graphdrl/planners/network_policy.h"
 
 namespace graphdrl {
@@ -26,50 +27,75 @@ const std::map<std::string, Factory>& factories() {
       {"random-walk", [](std::uint64_t seed, TimeLimit) { return std::make_unique<RandomWalkPolicy>(seed); }},
       {"dfs", [](std::uint64_t, TimeLimit) { return std::make_unique<DepthFirstPolicy>(); }},
       {"nearest", [](std::uint64_t, TimeLimit) { return std::make_unique<NearestUnvisitedPolicy>(); }},
+      {"explorer", [](std::uint64_t, TimeLimit) { return std::make_unique<ExplorerPolicy>(builtin_explorer()); }},
       {"exact", [](std::uint64_t, TimeLimit limit) { return std::make_unique<ExactPolicy>(limit); }},
   };
   return table;
 }
 
-constexpr std::string_view kBeam = "beam";
+constexpr int kGuidedWidth = 16;
 
-// The width of `beam` or `beam:W`; empty for another name.
-std::optional<int> beam_width(std::string_view name) {
-  if (name == kBeam) return BeamOptions{}.width;
-  if (!name.starts_with(std::string(kBeam) + ':')) return std::nullopt;
-  const std::string_view text = name.substr(kBeam.size() + 1);
-  int width = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), width);
-  if (error == std::errc() && end == text.data() + text.size() && width >= 1 && width <= kMaxBeamWidth) return width;
+// `beam[:W]` and `guided[:W[:FILE]]`, taken apart.
+struct BeamName {
+  int width;
+  bool guided;
+  std::string file;  // empty for the explorer in the program
+};
+
+// Empty for another name. Throws Error on a bad width.
+std::optional<BeamName> parse_beam_name(std::string_view name) {
+  const std::size_t colon = std::min(name.find(':'), name.size());
+  const std::string_view kind = name.substr(0, colon);
+  if (kind != "beam" && kind != "guided") return std::nullopt;
+  BeamName result{.width = kind == "beam" ? BeamOptions{}.width : kGuidedWidth, .guided = kind == "guided", .file = {}};
+  if (colon == name.size()) return result;
+  std::string_view text = name.substr(colon + 1);
+  if (const std::size_t next = text.find(':'); result.guided && next != std::string_view::npos) {
+    result.file = text.substr(next + 1);
+    text = text.substr(0, next);
+  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.width);
+  const bool good = error == std::errc() && end == text.data() + text.size();
+  if (good && result.width >= 1 && result.width <= kMaxBeamWidth) return result;
   throw Error({.what = "bad beam width",
-               .expected = fmt::format("beam:W with W from 1 to {}", kMaxBeamWidth),
+               .expected = fmt::format("{}:W with W from 1 to {}", kind, kMaxBeamWidth),
                .got = in_quotes(name, 200)});
+}
+
+std::unique_ptr<Policy> policy_of_file(const std::string& path) {
+  if (is_explorer_file(path)) return std::make_unique<ExplorerPolicy>(read_explorer_file(path));
+  return std::make_unique<NetworkPolicy>(read_policy_file(path));
 }
 
 }  // namespace
 
 std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, TimeLimit limit) {
-  if (const auto width = beam_width(name)) return std::make_unique<BeamPolicy>(BeamOptions{.width = *width}, limit);
+  if (const auto beam = parse_beam_name(name)) {
+    const BeamOptions options{.width = beam->width};
+    if (!beam->guided) return std::make_unique<BeamPolicy>(options, limit);
+    const SharedExplorer guide = beam->file.empty() ? builtin_explorer() : read_explorer_file(beam->file);
+    return std::make_unique<BeamPolicy>(options, guide, limit);
+  }
   if (limit && name != "exact") {
-    throw Error({.what = "a time limit is for policies that plan",
-                 .expected = "beam[:W] or exact",
+    throw Error({.what = "a time limit is for policies that search",
+                 .expected = "beam[:W], guided[:W[:FILE]] or exact",
                  .got = in_quotes(name, 200)});
   }
   const auto factory = factories().find(name);
   if (factory != factories().end()) return factory->second(seed, limit);
   std::error_code error;
-  if (std::filesystem::exists(name, error)) return std::make_unique<NetworkPolicy>(read_policy_file(name));
+  if (std::filesystem::exists(name, error)) return policy_of_file(name);
   throw Error({.what = "no such policy", .expected = policy_names(), .got = in_quotes(name, 200)});
 }
 
 std::string policy_names() {
-  std::vector<std::string> names = {"beam[:W]"};
+  std::vector<std::string> names = {"beam[:W]", "guided[:W[:FILE]]"};
   for (const auto& [name, unused] : factories()) names.push_back(name);
   return fmt::format("{} or a policy file", fmt::join(names, ", "));
 }
 
 std::string policy_label(const std::string& name) {
-  return factories().contains(name) || beam_width(name) ? name : std::filesystem::path(name).stem().string();
+  return factories().contains(name) || parse_beam_name(name) ? name : std::filesystem::path(name).stem().string();
 }
 
 }  // namespace graphdrl

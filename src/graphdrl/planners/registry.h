@@ -11,12 +11,12 @@
 
 namespace graphdrl {
 
-// `random`, `random-walk`, `dfs`, `nearest`, `beam` or `beam:W`, `exact`, or a policy file. The time limit holds for
-// each plan of a beam or an exact search. Throws Error on any other name, on a file that holds no policy, and on a time
-// limit for a policy that plans nothing.
+// `random`, `random-walk`, `dfs`, `nearest`, `explorer`, `beam` or `beam:W`, `guided`, `guided:W` or `guided:W:FILE`,
+// `exact`, or a policy file. The time limit holds for each plan of a beam or an exact search. Throws Error on any other
+// name, on a file that holds no policy, and on a time limit for a policy that plans nothing.
 std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, TimeLimit limit = {});
 
-// "beam[:W], dfs, exact, nearest, random, random-walk or a policy file", for help and errors.
+// "beam[:W], guided[:W[:FILE]], dfs, exact, …, random-walk or a policy file", for help and errors.
 std::string policy_names();
 
 // What a policy is called in a table: the name given, a file's stem.

@@ -11,15 +11,15 @@
 namespace graphdrl {
 namespace {
 
-// The whole lines of the file that belong to the first `episode` episodes.
-std::string lines_until(const std::filesystem::path& path, std::int64_t episode) {
+// The whole lines of the file up to a count.
+std::string lines_until(const std::filesystem::path& path, const std::string& counter, std::int64_t done) {
   std::string kept;
   if (!std::filesystem::exists(path)) return kept;
   std::istringstream content(read_file(path));
   for (std::string line; std::getline(content, line);) {
     const auto json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (!json.is_object() || !json.contains("episode") || !json["episode"].is_number()) break;
-    if (json["episode"].get<std::int64_t>() > episode) break;
+    if (!json.is_object() || !json.contains(counter) || !json[counter].is_number()) break;
+    if (json[counter].get<std::int64_t>() > done) break;
     kept += line + '\n';
   }
   return kept;
@@ -27,20 +27,18 @@ std::string lines_until(const std::filesystem::path& path, std::int64_t episode)
 
 }  // namespace
 
-MetricsFile::MetricsFile(const std::filesystem::path& path, std::int64_t episode) : path_(path) {
-  write_file(path, lines_until(path, episode));
+MetricsFile::MetricsFile(const std::filesystem::path& path, std::string counter, std::int64_t done)
+    : path_(path), counter_(std::move(counter)) {
+  write_file(path, lines_until(path, counter_, done));
   file_.open(path, std::ios::binary | std::ios::app);
 }
 
-void MetricsFile::write(const MetricsLine& line) {
+void MetricsFile::write(std::int64_t count, std::span<const Scalar> scalars) {
   nlohmann::ordered_json json;
-  json["episode"] = line.episode;
-  json["steps"] = line.steps;
-  json["epsilon"] = line.epsilon;
-  json["loss"] = std::isnan(line.loss) ? nlohmann::ordered_json() : nlohmann::ordered_json(line.loss);
-  json["visited_nodes"] = line.visited_nodes;
-  json["coverage"] = line.coverage;
-  json["reward"] = line.reward;
+  json[counter_] = count;
+  for (const Scalar& scalar : scalars) {
+    json[scalar.tag] = std::isnan(scalar.value) ? nlohmann::ordered_json() : nlohmann::ordered_json(scalar.value);
+  }
   file_ << json.dump() << '\n';
   if (!file_.flush()) throw Error({.what = "cannot write the metrics", .where = path_.string()});
 }

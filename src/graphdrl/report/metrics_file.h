@@ -4,30 +4,26 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <span>
+#include <string>
+
+#include "graphdrl/report/event_writer.h"
 
 namespace graphdrl {
 
-// The means over the episodes since the line before; epsilon is the last one's.
-struct MetricsLine {
-  std::int64_t episode;  // episodes done
-  std::int64_t steps;    // of all episodes so far
-  double epsilon;
-  double loss;  // not a number before learning starts
-  double visited_nodes;
-  double coverage;  // percent
-  double reward;    // of an episode
-};
-
 class MetricsFile {
  public:
-  // Appends to a file, after dropping the lines past `episode` that a run left behind which was resumed from an older
-  // checkpoint. Throws Error where the file cannot be written.
-  MetricsFile(const std::filesystem::path& path, std::int64_t episode);
+  // Appends to a file, after dropping the lines past count `done` that a run left behind which was resumed from an
+  // older checkpoint. `counter` is what lines are counted by and begin with: "episode". Throws Error where the file
+  // cannot be written.
+  MetricsFile(const std::filesystem::path& path, std::string counter, std::int64_t done);
 
-  void write(const MetricsLine& line);
+  // What is not a number becomes null.
+  void write(std::int64_t count, std::span<const Scalar> scalars);
 
  private:
   std::filesystem::path path_;
+  std::string counter_;
   std::ofstream file_;
 };
 

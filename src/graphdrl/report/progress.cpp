@@ -30,31 +30,26 @@ std::size_t terminal_columns(std::FILE* out) {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay(std::FILE* out, std::int64_t first_episode)
-    : out_(out), terminal_(isatty(fileno(out)) != 0), first_episode_(first_episode), last_shown_(start_) {}
+ProgressDisplay::ProgressDisplay(std::FILE* out, std::string unit, std::int64_t first)
+    : out_(out), terminal_(isatty(fileno(out)) != 0), unit_(std::move(unit)), first_(first), last_shown_(start_) {}
 
-void ProgressDisplay::show(const TrainingStatus& status, bool always) {
+void ProgressDisplay::show(std::int64_t done, std::int64_t all, const std::string& status, bool always) {
   const Clock::time_point now = Clock::now();
   if (!always && now - last_shown_ < (terminal_ ? kTerminalInterval : kPlainInterval)) return;
   last_shown_ = now;
 
   const double elapsed_s = Seconds(now - start_).count();
-  const std::int64_t done = status.episode - first_episode_;
   const double left_s =
-      done > 0 ? elapsed_s / static_cast<double>(done) * static_cast<double>(status.episodes - status.episode) : NAN;
-  std::string line =
-      fmt::format("{}/{}  coverage {:.1f} %  reward {:.2f}  loss {}  eps {:.3f}  {:.0f} steps/s  {} left",
-                  status.episode, status.episodes, status.coverage, status.reward,
-                  std::isnan(status.loss) ? std::string("-") : fmt::format("{:.4f}", status.loss), status.epsilon,
-                  static_cast<double>(status.steps_this_session) / std::max(elapsed_s, 1e-9),
-                  std::isnan(left_s) ? std::string("-") : format_duration(left_s));
+      done > first_ ? elapsed_s / static_cast<double>(done - first_) * static_cast<double>(all - done) : NAN;
+  std::string line = fmt::format("{}/{}  {}  {} left", done, all, status,
+                                 std::isnan(left_s) ? std::string("-") : format_duration(left_s));
   if (!terminal_) {
-    std::fputs(("episode " + line + '\n').c_str(), out_);
+    std::fputs((unit_ + " " + line + '\n').c_str(), out_);
   } else {
     // The bar takes what room the numbers leave.
     const std::size_t columns = terminal_columns(out_);
     const std::size_t room = columns > line.size() + 4 ? std::min(columns - line.size() - 4, kMaxBarWidth) : 0;
-    const auto filled = room * static_cast<std::size_t>(status.episode) / static_cast<std::size_t>(status.episodes);
+    const auto filled = room * static_cast<std::size_t>(done) / static_cast<std::size_t>(all);
     if (room > 0) line = fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(room - filled, '.'), line);
     if (line.size() > columns) line.resize(columns);
     std::fputs(("\r" + line + "\033[K").c_str(), out_);

@@ -26,6 +26,8 @@ class Adam {
   // One step. REQUIRES: both as long as the moments.
   void step(std::span<const float> grad, std::span<float> values);
 
+  void set_learning_rate(double rate) { options_.learning_rate = rate; }
+
   // For checkpoints.
   std::int64_t& steps() { return steps_; }
   std::vector<float>& first() { return first_; }

@@ -1,53 +1,8 @@
 #include "graphdrl/train/train_options.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <nlohmann/json.hpp>
-
-#include "graphdrl/base/error.h"
-#include "graphdrl/io/file.h"
+#include "graphdrl/train/option_table.h"
 
 namespace graphdrl {
-namespace {
-
-void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& choices) {
-  if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
-  std::string expected;
-  for (const std::string& choice : choices) expected += (expected.empty() ? "" : " or ") + choice;
-  throw Error({.what = "bad value", .expected = expected, .got = in_quotes(value), .where = option});
-}
-
-template <typename T>
-void check_range(const std::string& option, T value, T low, T high) {
-  if (value >= low && value <= high) return;
-  throw Error({.what = "value out of range",
-               .expected = fmt::format("{} to {}", low, high),
-               .got = fmt::format("{}", value),
-               .where = option});
-}
-
-bool has_type_of(const nlohmann::json& json, const std::string&) {
-  return json.is_string();
-}
-bool has_type_of(const nlohmann::json& json, bool) {
-  return json.is_boolean();
-}
-bool has_type_of(const nlohmann::json& json, std::int64_t) {
-  return json.is_number_integer();
-}
-bool has_type_of(const nlohmann::json& json, std::uint64_t) {
-  return json.is_number_unsigned();
-}
-bool has_type_of(const nlohmann::json& json, double) {
-  return json.is_number();
-}
-bool has_type_of(const nlohmann::json& json, const std::vector<std::string>&) {
-  return json.is_array() && std::all_of(json.begin(), json.end(), [](const auto& item) { return item.is_string(); });
-}
-
-}  // namespace
-
 void validate(const TrainOptions& options) {
   constexpr std::int64_t kMany = 1'000'000'000;
   check_choice("--preset", options.preset, {"paper"});
@@ -78,25 +33,16 @@ EpisodeOptions episode_options(const TrainOptions& options, const World& world) 
 }
 
 void write_config(const std::filesystem::path& path, const TrainOptions& options) {
-  nlohmann::ordered_json json;
-  for_each_field(options, [&](const char* key, const auto& value, const char*) { json[key] = value; });
-  write_file(path, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
+  OptionWriter writer;
+  for_each_field(options, writer);
+  writer.write(path);
 }
 
 TrainOptions read_config(const std::filesystem::path& path) {
-  const auto json = nlohmann::json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) throw Error({.what = "not a run's configuration", .where = path.string()});
+  OptionReader reader(path);
   TrainOptions options;
-  std::size_t known = 0;
-  for_each_field(options, [&](const char* key, auto& value, const char*) {
-    if (!json.contains(key)) throw Error({.what = "missing key " + in_quotes(key), .where = path.string()});
-    if (!has_type_of(json[key], value)) {
-      throw Error({.what = "value of the wrong type", .got = json[key].dump(), .where = path.string() + ": " + key});
-    }
-    json[key].get_to(value);
-    ++known;
-  });
-  if (known != json.size()) throw Error({.what = "a key that no option has", .where = path.string()});
+  for_each_field(options, reader);
+  reader.finish();
   validate(options);
   return options;
 }

@@ -38,7 +38,7 @@ struct TrainOptions {
 
 // Calls field(key, member, help) for every option, in the order of the help.
 template <typename Options, typename Field>
-void for_each_field(Options& options, const Field& field) {
+void for_each_field(Options& options, Field&& field) {
   field("preset", options.preset, "The explorer to train: paper");
   field("maps", options.maps, "Maps to train on, drawn anew for every episode: paper:a, a file, a folder");
   field("episodes", options.episodes, "Episodes; epsilon's schedule spans all of them");

@@ -84,7 +84,7 @@ bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
     const std::chrono::duration<double> session = std::chrono::steady_clock::now() - start;
     progress_.elapsed_s = elapsed_before_s + session.count();
   };
-  MetricsFile metrics(run_.metrics(), progress_.episode);
+  MetricsFile metrics(run_.metrics(), "episode", progress_.episode);
   EventWriter events(run_.path(), progress_.episode + 1);
   while (progress_.episode < options_.episodes) {  // for episode e = 1 … E
     if (!in_episode_) begin_episode();             //   construct the initial state s_0
@@ -101,13 +101,11 @@ bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
     end_episode();
     const bool last = progress_.episode == options_.episodes;
     const MetricsLine line = window_means();
-    display.show({.episode = progress_.episode,
-                  .episodes = options_.episodes,
-                  .coverage = line.coverage,
-                  .reward = line.reward,
-                  .loss = line.loss,
-                  .epsilon = line.epsilon,
-                  .steps_this_session = progress_.steps - steps_before},
+    const double session_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    display.show(progress_.episode, options_.episodes,
+                 fmt::format("coverage {:.1f} %  reward {:.2f}  loss {}  eps {:.3f}  {:.0f} steps/s", line.coverage,
+                             line.reward, std::isnan(line.loss) ? "-" : fmt::format("{:.4f}", line.loss), line.epsilon,
+                             static_cast<double>(progress_.steps - steps_before) / std::max(session_s, 1e-9)),
                  last);
     if (progress_.window_episodes == kLogEvery || last) log(line, metrics, events);
     if (progress_.episode % options_.checkpoint_every == 0 && !last) {
@@ -202,7 +200,12 @@ MetricsLine Trainer::window_means() const {
 }
 
 void Trainer::log(const MetricsLine& line, MetricsFile& metrics, EventWriter& events) {
-  metrics.write(line);
+  metrics.write(line.episode, std::vector<Scalar>{{"steps", static_cast<double>(line.steps)},
+                                                  {"epsilon", line.epsilon},
+                                                  {"loss", line.loss},
+                                                  {"visited_nodes", line.visited_nodes},
+                                                  {"coverage", line.coverage},
+                                                  {"reward", line.reward}});
   std::vector<Scalar> scalars = {
       {"epsilon", line.epsilon}, {"visited_nodes", line.visited_nodes}, {"reward", line.reward}};
   if (!std::isnan(line.loss)) scalars.push_back({"loss", line.loss});

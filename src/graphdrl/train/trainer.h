@@ -35,6 +35,17 @@ struct TrainingProgress {
   double window_reward = 0;
 };
 
+// The means over the episodes since the line before; epsilon is the last one's.
+struct MetricsLine {
+  std::int64_t episode;  // episodes done
+  std::int64_t steps;    // of all episodes so far
+  double epsilon;
+  double loss;  // not a number before learning starts
+  double visited_nodes;
+  double coverage;  // percent
+  double reward;    // of an episode
+};
+
 // One training in one run directory. Its whole state goes into each checkpoint, in the middle of an episode too, so
 // that a resumed run ends with the bytes of one that was never interrupted.
 class Trainer {

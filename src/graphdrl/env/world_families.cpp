@@ -1,0 +1,121 @@
+#include "graphdrl/env/world_families.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/graph/graph_generators.h"
+#include "graphdrl/graph/grid_generators.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr int kMinSide = 3;
+constexpr int kMaxSide = 500;
+constexpr int kMinNodes = 2;
+constexpr int kMaxNodes = 20'000;
+constexpr int kMostCost = 5;
+constexpr double kOneWayShare = 0.3;
+
+constexpr std::array<WorldFamily, 10> kFamilies = {{
+    {"obstacles", true, "each cell an obstacle with a probability from 0.1 to 0.4, half the cells free at least"},
+    {"maze", true, "perfect mazes, corridors one cell wide; odd sides"},
+    {"loop-maze", true, "mazes, each inner wall between two rooms opened with a probability from 0.05 to 0.2"},
+    {"braided-maze", true, "mazes, each dead end opened with a probability from 0.3 to 1"},
+    {"rooms", true, "rooms of 2 to 4 cells a side, joined by corridors"},
+    {"tree", false, "drawn uniformly from all trees"},
+    {"erdos-renyi", false, "mean degree from 2.5 to 4, the largest part"},
+    {"barabasi-albert", false, "each node joins by 1 or 2 edges"},
+    {"watts-strogatz", false, "a ring of degree 4, 0.1 to 0.3 of the edges led elsewhere, the largest part"},
+    {"geometric", false, "mean degree from 4 to 7, the largest part; costs are lengths where there are any"},
+}};
+
+double draw(double low, double high, Rng& rng) {
+  return low + (high - low) * rng.uniform();
+}
+
+World grid_world_of(const WorldSpec& spec, Rng& rng) {
+  const int side = spec.size;
+  const auto map = [&]() -> GridMap {
+    if (spec.family == "obstacles") {
+      for (;;) {
+        GridMap drawn = random_obstacles_map(side, side, draw(0.1, 0.4, rng), rng);
+        if (2 * std::count(drawn.blocked.begin(), drawn.blocked.end(), false) >= side * side - 1) return drawn;
+      }
+    }
+    if (spec.family == "maze") return maze_map(side, side, 0, rng);
+    if (spec.family == "loop-maze") return maze_map(side, side, draw(0.05, 0.2, rng), rng);
+    if (spec.family == "braided-maze") return braided_maze_map(side, side, draw(0.3, 1, rng), rng);
+    return rooms_map(side, side, 4, rng);
+  };
+  return World(spec.name(), map());
+}
+
+Graph graph_of(const WorldSpec& spec, Rng& rng) {
+  const int nodes = spec.size;
+  if (spec.family == "tree") return random_tree(nodes, rng);
+  if (spec.family == "erdos-renyi") return largest_part(erdos_renyi_graph(nodes, draw(2.5, 4, rng), rng));
+  if (spec.family == "barabasi-albert") return barabasi_albert_graph(nodes, 1 + static_cast<int>(rng.below(2)), rng);
+  if (spec.family == "watts-strogatz") {
+    return largest_part(watts_strogatz_graph(nodes, 2, draw(0.1, 0.3, rng), rng));
+  }
+  return largest_part(geometric_graph(nodes, draw(4, 7, rng), spec.weighted, rng));
+}
+
+const WorldFamily& find_family(const WorldSpec& spec) {
+  const auto* const family = std::find_if(kFamilies.begin(), kFamilies.end(),
+                                          [&](const WorldFamily& known) { return known.name == spec.family; });
+  if (family == kFamilies.end()) {
+    std::string names;
+    for (const WorldFamily& known : kFamilies) names += fmt::format("{}{}", names.empty() ? "" : ", ", known.name);
+    throw Error({.what = "no such family of worlds", .expected = names, .got = in_quotes(spec.family, 200)});
+  }
+  const int least = family->grid ? kMinSide : kMinNodes;
+  const int most = family->grid ? kMaxSide : kMaxNodes;
+  const bool odd_only = family->name.ends_with("maze");
+  if (spec.size < least || spec.size > most || (odd_only && spec.size % 2 == 0)) {
+    throw Error({.what = fmt::format("bad size of {}", in_quotes(spec.family)),
+                 .expected = fmt::format("{} number of {} from {} to {}", odd_only ? "an odd" : "a",
+                                         family->grid ? "cells a side" : "nodes", least, most),
+                 .got = fmt::format("{}", spec.size)});
+  }
+  if (family->grid && (spec.weighted || spec.directed)) {
+    throw Error({.what = "grids have neither costs nor directions", .got = in_quotes(spec.family)});
+  }
+  return *family;
+}
+
+// The same number everywhere for the same text.
+std::uint64_t text_hash(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
+
+}  // namespace
+
+std::span<const WorldFamily> world_families() {
+  return kFamilies;
+}
+
+std::string WorldSpec::name() const {
+  return fmt::format("{}-{}{}{}", family, size, weighted ? "-weighted" : "", directed ? "-directed" : "");
+}
+
+World random_world(const WorldSpec& spec, Rng& rng) {
+  if (find_family(spec).grid) return grid_world_of(spec, rng);
+  Graph graph = graph_of(spec, rng);
+  if (spec.weighted && spec.family != "geometric") graph = with_random_costs(graph, kMostCost, rng);
+  if (spec.directed) graph = with_one_way_edges(graph, kOneWayShare, rng);
+  std::vector<bool> blocked(graph.node_count());
+  return World(spec.name(), std::move(graph), std::move(blocked));
+}
+
+World split_world(const WorldSpec& spec, Split split, int index) {
+  Rng rng(derive_seed(text_hash(spec.name()), static_cast<std::uint64_t>(split), static_cast<std::uint64_t>(index)));
+  return random_world(spec, rng);
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,41 @@
+// Families of random worlds, and their frozen splits for training, validation and test.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/env/world.h"
+
+namespace graphdrl {
+
+struct WorldFamily {
+  std::string_view name;
+  bool grid;                     // sizes are sides of a square, not nodes
+  std::string_view description;  // with the parameters' ranges
+};
+
+// obstacles, maze, loop-maze, braided-maze, rooms, tree, erdos-renyi, barabasi-albert, watts-strogatz, geometric
+std::span<const WorldFamily> world_families();
+
+struct WorldSpec {
+  std::string family;
+  int size;  // side of a grid, else nodes
+  bool weighted = false;
+  bool directed = false;
+
+  std::string name() const;  // "maze-11", "tree-50-weighted-directed"
+};
+
+// The family's parameters are drawn from their ranges, then the world. Every world is connected, whichever way its
+// edges lead. Throws Error on an unknown family, a size that it does not have, and on costs or directions of a grid.
+World random_world(const WorldSpec& spec, Rng& rng);
+
+enum class Split { kTrain, kValidation, kTest };
+
+// World `index` of a split: always the same one, and never one of another split but by chance.
+World split_world(const WorldSpec& spec, Split split, int index);
+
+}  // namespace graphdrl

@@ -1,0 +1,38 @@
+// Random graphs, undirected, every edge of cost 1. The same random numbers give the same graph on every machine, which
+// frozen test sets need. REQUIRES everywhere: nodes >= 1.
+#pragma once
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/graph/graph.h"
+
+namespace graphdrl {
+
+// A tree drawn uniformly from all on these nodes [Aldous 1990; Broder 1989].
+Graph random_tree(int nodes, Rng& rng);
+
+// Each pair of nodes an edge with the probability that gives this mean degree [Erdős and Rényi 1959]. REQUIRES:
+// mean_degree >= 0.
+Graph erdos_renyi_graph(int nodes, double mean_degree, Rng& rng);
+
+// Nodes join one after the other, each by `links` edges to nodes drawn in proportion to their degree [Barabási and
+// Albert 1999]. REQUIRES: links >= 1.
+Graph barabasi_albert_graph(int nodes, int links, Rng& rng);
+
+// A ring whose nodes know the `reach` next ones on both sides, each edge led elsewhere with probability `rewired`
+// [Watts and Strogatz 1998]. REQUIRES: reach >= 1, 0 <= rewired <= 1.
+Graph watts_strogatz_graph(int nodes, int reach, double rewired, Rng& rng);
+
+// Points drawn in a unit square, an edge where two are nearer than the radius that gives about this mean degree. The
+// edges' lengths, in mean edges, are their costs with `lengths_cost`.
+Graph geometric_graph(int nodes, double mean_degree, bool lengths_cost, Rng& rng);
+
+// The largest connected part, its nodes renumbered in ascending order; the part met first among equals.
+Graph largest_part(const Graph& graph);
+
+// The same edges, at costs drawn uniformly from the integers 1 to `most`.
+Graph with_random_costs(const Graph& graph, int most, Rng& rng);
+
+// The same edges, each leading one way only, drawn at random, with probability `share`, and else both ways.
+Graph with_one_way_edges(const Graph& graph, double share, Rng& rng);
+
+}  // namespace graphdrl

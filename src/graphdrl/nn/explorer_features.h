@@ -1,0 +1,132 @@
+// What the explorer's network sees: one row of numbers per valid node and one per possible first visit, none of which
+// depends on a world's size, on coordinates or on how its nodes are numbered. Costs are in mean edges of the world.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "graphdrl/env/world.h"
+#include "graphdrl/graph/search.h"
+#include "graphdrl/nn/graph_batch.h"
+
+namespace graphdrl {
+
+inline constexpr std::array<std::string_view, 20> kExplorerNodeFeatures = {"unvisited",
+                                                                           "current",
+                                                                           "candidate",
+                                                                           "degree",
+                                                                           "unvisited_neighbours",
+                                                                           "isolated",
+                                                                           "dead_end",
+                                                                           "distance",
+                                                                           "visit_cost",
+                                                                           "in_reach",
+                                                                           "distance_to_work",
+                                                                           "part_size",
+                                                                           "part_share",
+                                                                           "edge_cost",
+                                                                           "budget_per_work",
+                                                                           "slack",
+                                                                           "hanging",
+                                                                           "hanging_size",
+                                                                           "hanging_height",
+                                                                           "one_way"};
+inline constexpr int kExplorerNodeFeatureCount = static_cast<int>(kExplorerNodeFeatures.size());
+
+inline constexpr std::array<std::string_view, 10> kExplorerVisitFeatures = {
+    "cost", "new_dead_ends", "unvisited_neighbours", "next_cost",     "budget_per_work", "slack",
+    "work", "hanging",       "hanging_size",         "hanging_height"};
+inline constexpr int kExplorerVisitFeatureCount = static_cast<int>(kExplorerVisitFeatures.size());
+
+// A move: a walk to an unvisited node next to visited ground, by the cheapest way through visited ground.
+struct FirstVisit {
+  NodeId node;
+  double cost;  // in units of cost
+};
+
+// The state of an exploration, as planners keep it.
+struct ExplorerState {
+  const std::uint64_t* visited;  // a bit per node
+  NodeId position;
+  double spendable;
+};
+
+// B states with C first visits together.
+struct ExplorerBatch {
+  GraphBatch graphs;
+  std::vector<float> node_x;    // [N, 20]
+  std::vector<int> current;     // [B], the current node's row
+  std::vector<float> visit_x;   // [C, 10]
+  std::vector<int> target;      // [C], the row of the node visited
+  std::vector<int> state;       // [C], the state it belongs to; visits of a state stand together
+  std::vector<double> ceiling;  // [B], about what a walk can still visit: nodes in reach, or what the budget pays for
+  std::deque<Graph> parts;      // of worlds, which `graphs` points to
+
+  void clear();
+  int visit_count() const { return static_cast<int>(target.size()); }  // C
+};
+
+// How many nodes around the current one the network looks at, at least while that many are in reach: those outside look
+// the same from wherever a walk goes next, and a move costs the same in a world of any size.
+inline constexpr int kExplorerScope = 96;
+
+// Builds the features of one world's states. Keeps working memory; not thread safe. The world must outlive it, and it
+// every batch that it appended to.
+class ExplorerEncoder {
+ public:
+  explicit ExplorerEncoder(const World& world);
+
+  const World& world() const { return *world_; }
+
+  // Appends a state: of the valid nodes in reach the nearest `scope`, and more until three first visits are among them.
+  // Gives the first visits, nearest first, until the next call. Cost: O(nodes + edges), and a search for each visit
+  // that leads to no unvisited neighbour.
+  std::span<const FirstVisit> append(const ExplorerState& state, int scope, ExplorerBatch& batch);
+
+  // Whether there were first visits out of scope at the last call.
+  bool overlooked() const { return overlooked_; }
+
+ private:
+  void measure_distances(const ExplorerState& state);
+  void measure_work(const std::vector<bool>& unvisited);
+
+  const World* world_;
+  Graph into_;               // the open graph turned round
+  Graph graph_;              // the valid nodes, renumbered in ascending order (rows), with edges in both directions
+  std::vector<int> row_of_;  // by node; -1 for blocked ones
+  double unit_;              // mean cost of an edge
+  NearestFirst nearest_;
+  NearestFirst from_visit_;
+  std::vector<float> fixed_;  // [valid nodes, 3]: degree, edge cost, share of edges that lead one way
+  std::vector<FirstVisit> visits_;
+  bool overlooked_ = false;
+  std::vector<NodeId> in_reach_;  // rows, nearest first, the position's first
+  std::vector<NodeId> number_;    // for Graph::induced
+  std::vector<NodeId> all_rows_;  // 0, 1, …
+  // By row:
+  std::vector<bool> unvisited_;
+  std::vector<double> distance_;    // from the position, in mean edges
+  std::vector<double> visit_cost_;  // of a first visit, likewise; else 0
+  std::vector<int> unvisited_neighbours_;
+  std::vector<int> work_distance_;
+  std::vector<int> part_size_;
+  std::vector<bool> hanging_;
+  std::vector<int> hanging_size_;
+  std::vector<int> hanging_height_;
+  std::vector<int> ties_;
+  std::vector<int> queue_;
+};
+
+// What an unvisited node is likely to cost on top of one step, in mean edges, by its unvisited neighbours: one without
+// any must be left again by the way one came; one with a single neighbour is a dead end. Of fourteen pairs of penalties
+// tried, the one by which a beam visits most on random 11×11 mazes at 1.0x.
+double leftover_penalty(int unvisited_neighbours);
+
+// By how much the sum of penalties over all unvisited nodes changes when `node` is visited. into: open turned round.
+double change_of_penalties(const Graph& open, const Graph& into, const std::uint64_t* visited, NodeId node);
+
+}  // namespace graphdrl

@@ -1,0 +1,125 @@
+#include "graphdrl/nn/explorer_network.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/nn/vector_math.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr int kWidth = kExplorerConvShape.width;
+constexpr int kVisitsPerTask = 64;
+
+std::vector<TensorSpec> make_specs() {
+  TensorList list;
+  list.add_conv("conv", kExplorerConvShape);
+  list.add_linear("head1", kExplorerHead1);
+  list.add_linear("head2", kExplorerHead2);
+  return std::move(list).specs();
+}
+
+nlohmann::json network_description() {
+  const auto& conv = kExplorerConvShape;
+  return {{"kind", "explorer"},
+          {"node_features", kExplorerNodeFeatures},
+          {"visit_features", kExplorerVisitFeatures},
+          {"layers",
+           {{{"type", "gated_graph_conv"}, {"inputs", conv.inputs}, {"width", conv.width}, {"steps", conv.steps}},
+            {{"type", "linear"}, {"inputs", kExplorerHead1.inputs}, {"width", kExplorerHead1.outputs}},
+            {{"type", "linear"}, {"inputs", kExplorerHead2.inputs}, {"width", kExplorerHead2.outputs}}}},
+          {"head_inputs", {"target", "current", "mean", "node_features", "visit_features"}},
+          {"activation", "elu"}};
+}
+
+// A row of [count, width].
+template <typename T>
+T* row_of(T* values, int row, int width) {
+  return values + static_cast<std::ptrdiff_t>(row) * width;
+}
+
+void add_to(const float* from, int count, float* to) {
+  for (int i = 0; i < count; ++i) to[i] += from[i];
+}
+
+}  // namespace
+
+const std::vector<TensorSpec>& ExplorerParameters::specs() {
+  static const std::vector<TensorSpec> specs = make_specs();
+  return specs;
+}
+
+void write_policy_file(const std::filesystem::path& path, const ExplorerParameters& parameters) {
+  write_policy_file(path, parameters, network_description());
+}
+
+ExplorerParameters read_explorer(const Safetensors& file) {
+  require_description(file, network_description(), ExplorerParameters::specs());
+  return ExplorerParameters::from_file(file);
+}
+
+void ExplorerNetwork::set_parameters(const ExplorerParameters& parameters) {
+  parameters_ = &parameters;
+  conv_.set_weights(parameters.conv("conv"));
+}
+
+void ExplorerNetwork::forward(const ExplorerBatch& batch, std::span<float> shortfall, bool keep) {
+  const int visits = batch.visit_count();
+  const int graphs = batch.graphs.graph_count();
+  embedded_.resize(static_cast<std::size_t>(batch.graphs.node_count()) * kWidth);
+  pooled_.resize(static_cast<std::size_t>(graphs) * kWidth);
+  joined_.resize(static_cast<std::size_t>(visits) * kExplorerHeadInputs);
+  hidden_.resize(static_cast<std::size_t>(visits) * kExplorerHead1.outputs);
+  conv_.forward(batch.graphs, batch.node_x.data(), embedded_.data(), keep);
+  sum_pool(batch.graphs, kWidth, embedded_.data(), pooled_.data());
+  for (int g = 0; g < graphs; ++g) {
+    const float share = 1.0f / static_cast<float>(batch.graphs.graph(g).node_count());
+    for (int i = 0; i < kWidth; ++i) row_of(pooled_.data(), g, kWidth)[i] *= share;
+  }
+  parallel_for((visits + kVisitsPerTask - 1) / kVisitsPerTask, [&](int task) {
+    for (int v = task * kVisitsPerTask; v < std::min(visits, (task + 1) * kVisitsPerTask); ++v) {
+      float* to = row_of(joined_.data(), v, kExplorerHeadInputs);
+      to = std::copy_n(row_of(embedded_.data(), batch.target[v], kWidth), kWidth, to);
+      to = std::copy_n(row_of(embedded_.data(), batch.current[batch.state[v]], kWidth), kWidth, to);
+      to = std::copy_n(row_of(pooled_.data(), batch.state[v], kWidth), kWidth, to);
+      to = std::copy_n(row_of(batch.node_x.data(), batch.target[v], kExplorerNodeFeatureCount),
+                       kExplorerNodeFeatureCount, to);
+      std::copy_n(row_of(batch.visit_x.data(), v, kExplorerVisitFeatureCount), kExplorerVisitFeatureCount, to);
+    }
+  });
+  linear(kExplorerHead1, visits, joined_.data(), parameters_->linear("head1"), hidden_.data());
+  elu(hidden_.data(), hidden_.size());
+  linear(kExplorerHead2, visits, hidden_.data(), parameters_->linear("head2"), shortfall.data());
+}
+
+void ExplorerNetwork::backward(const ExplorerBatch& batch, std::span<const float> grad_shortfall,
+                               ExplorerParameters& grad) {
+  const int visits = batch.visit_count();
+  grad_hidden_.resize(hidden_.size());
+  grad_joined_.resize(joined_.size());
+  grad_pooled_.assign(pooled_.size(), 0.0f);
+  grad_nodes_.resize(embedded_.size());
+  linear_backward(kExplorerHead2, visits, hidden_.data(), parameters_->linear("head2"), grad_shortfall.data(),
+                  grad_hidden_.data(), grad.linear("head2"));
+  elu_backward(hidden_.data(), grad_hidden_.data(), grad_hidden_.size());
+  linear_backward(kExplorerHead1, visits, joined_.data(), parameters_->linear("head1"), grad_hidden_.data(),
+                  grad_joined_.data(), grad.linear("head1"));
+  for (int v = 0; v < visits; ++v) {
+    const float* const from = row_of(grad_joined_.data(), v, kExplorerHeadInputs);
+    add_to(from + 2 * kWidth, kWidth, row_of(grad_pooled_.data(), batch.state[v], kWidth));
+  }
+  for (int g = 0; g < batch.graphs.graph_count(); ++g) {
+    const float share = 1.0f / static_cast<float>(batch.graphs.graph(g).node_count());
+    for (int i = 0; i < kWidth; ++i) row_of(grad_pooled_.data(), g, kWidth)[i] *= share;
+  }
+  sum_pool_backward(batch.graphs, kWidth, grad_pooled_.data(), grad_nodes_.data());
+  for (int v = 0; v < visits; ++v) {
+    const float* const from = row_of(grad_joined_.data(), v, kExplorerHeadInputs);
+    add_to(from, kWidth, row_of(grad_nodes_.data(), batch.target[v], kWidth));
+    add_to(from + kWidth, kWidth, row_of(grad_nodes_.data(), batch.current[batch.state[v]], kWidth));
+  }
+  conv_.backward(batch.graphs, embedded_.data(), grad_nodes_.data(), nullptr, grad.conv("conv"));
+}
+
+}  // namespace graphdrl

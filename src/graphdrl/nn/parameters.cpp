@@ -1,0 +1,147 @@
+#include "graphdrl/nn/parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+namespace {
+constexpr const char* kDescriptionKey = "network";
+}
+
+void TensorList::add(std::string name, Shape shape, float bound, bool trainable) {
+  std::size_t size = 1;
+  for (const std::int64_t extent : shape) size *= static_cast<std::size_t>(extent);
+  const std::size_t offset = specs_.empty() ? 0 : specs_.back().offset + specs_.back().size;
+  specs_.push_back({std::move(name), std::move(shape), trainable, bound, offset, size});
+}
+
+void TensorList::add_conv(const std::string& name, const GatedGraphConvShape& shape) {
+  const float bound = 1.0f / std::sqrt(static_cast<float>(shape.width));
+  add(name + ".weight", {shape.steps, shape.width, shape.width}, bound);
+  add(name + ".rnn.weight_ih", {3 * shape.width, shape.width}, bound);
+  add(name + ".rnn.weight_hh", {3 * shape.width, shape.width}, bound);
+  add(name + ".rnn.bias_ih", {3 * shape.width}, bound);
+  add(name + ".rnn.bias_hh", {3 * shape.width}, bound);
+}
+
+void TensorList::add_linear(const std::string& name, const LinearShape& shape) {
+  const float bound = 1.0f / std::sqrt(static_cast<float>(shape.inputs));
+  add(name + ".weight", {shape.outputs, shape.inputs}, bound);
+  add(name + ".bias", {shape.outputs}, bound);
+}
+
+ParameterBuffer::ParameterBuffer(const std::vector<TensorSpec>& specs)
+    : specs_(&specs), values_(specs.back().offset + specs.back().size) {}
+
+ParameterBuffer::ParameterBuffer(const std::vector<TensorSpec>& specs, const Safetensors& file,
+                                 const std::string& prefix)
+    : ParameterBuffer(specs) {
+  for (const TensorSpec& spec : specs) {
+    const std::vector<float> values = file.get<float>(prefix + spec.name, spec.shape);
+    const bool variance = spec.name.ends_with("running_var");
+    for (const float value : values) {
+      if (std::isfinite(value) && !(variance && value < 0)) continue;
+      throw Error({.what = "tensor " + in_quotes(prefix + spec.name) + " holds a value that no network can have",
+                   .got = fmt::format("{}", value),
+                   .where = file.source()});
+    }
+    std::copy(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(spec.offset));
+  }
+}
+
+void ParameterBuffer::draw(Rng& rng) {
+  for (const TensorSpec& spec : *specs_) {
+    float* const values = values_.data() + spec.offset;
+    if (spec.bound == 0) {
+      std::fill_n(values, spec.size, 0.0f);
+      continue;
+    }
+    for (std::size_t i = 0; i < spec.size; ++i) values[i] = spec.bound * static_cast<float>(2 * rng.uniform() - 1);
+  }
+}
+
+const TensorSpec& ParameterBuffer::find(const std::string& name) const {
+  return *std::find_if(specs_->begin(), specs_->end(), [&](const TensorSpec& spec) { return spec.name == name; });
+}
+
+float* ParameterBuffer::tensor(const std::string& name) {
+  return values_.data() + find(name).offset;
+}
+
+const float* ParameterBuffer::tensor(const std::string& name) const {
+  return values_.data() + find(name).offset;
+}
+
+GatedGraphConvTensors<float> ParameterBuffer::conv(const std::string& name) {
+  return {.weight = tensor(name + ".weight"),
+          .w_ih = tensor(name + ".rnn.weight_ih"),
+          .w_hh = tensor(name + ".rnn.weight_hh"),
+          .b_ih = tensor(name + ".rnn.bias_ih"),
+          .b_hh = tensor(name + ".rnn.bias_hh")};
+}
+
+GatedGraphConvTensors<const float> ParameterBuffer::conv(const std::string& name) const {
+  const auto views = const_cast<ParameterBuffer*>(this)->conv(name);
+  return {.weight = views.weight, .w_ih = views.w_ih, .w_hh = views.w_hh, .b_ih = views.b_ih, .b_hh = views.b_hh};
+}
+
+LinearTensors<float> ParameterBuffer::linear(const std::string& name) {
+  return {.weight = tensor(name + ".weight"), .bias = tensor(name + ".bias")};
+}
+
+LinearTensors<const float> ParameterBuffer::linear(const std::string& name) const {
+  return {.weight = tensor(name + ".weight"), .bias = tensor(name + ".bias")};
+}
+
+std::vector<TensorView> ParameterBuffer::views(const std::string& prefix) const {
+  std::vector<TensorView> views;
+  for (const TensorSpec& spec : *specs_) {
+    views.emplace_back(prefix + spec.name, spec.shape, std::span(values_).subspan(spec.offset, spec.size));
+  }
+  return views;
+}
+
+std::size_t trainable_count(const std::vector<TensorSpec>& specs) {
+  std::size_t count = 0;
+  for (const TensorSpec& spec : specs) count += spec.trainable ? spec.size : 0;
+  return count;
+}
+
+void write_policy_file(const std::filesystem::path& path, const ParameterBuffer& parameters,
+                       const nlohmann::json& description) {
+  write_safetensors(path, parameters.views(), {{kDescriptionKey, description.dump()}});
+}
+
+nlohmann::json policy_description(const Safetensors& file) {
+  const auto text = file.metadata().find(kDescriptionKey);
+  if (text == file.metadata().end()) {
+    throw Error({.what = "not a policy file", .expected = "a network's description", .where = file.source()});
+  }
+  return nlohmann::json::parse(text->second, nullptr, /*allow_exceptions=*/false);
+}
+
+void require_description(const Safetensors& file, const nlohmann::json& expected,
+                         const std::vector<TensorSpec>& specs) {
+  const auto found = policy_description(file);
+  for (const auto& [key, value] : expected.items()) {
+    if (found.is_object() && found.contains(key) && found[key] == value) continue;
+    const std::string got = found.is_object() && found.contains(key) ? found[key].dump() : "nothing";
+    throw Error({.what = fmt::format("policy of another network: {} differs", in_quotes(key)),
+                 .expected = value.dump(),
+                 .got = in_quotes(got, 200),
+                 .where = file.source()});
+  }
+  if (file.entries().size() != specs.size()) {
+    throw Error({.what = "policy of another network",
+                 .expected = fmt::format("{} tensors", specs.size()),
+                 .got = fmt::format("{}", file.entries().size()),
+                 .where = file.source()});
+  }
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,59 @@
+// The trained explorer as a policy, and as the guide of a beam.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graphdrl/nn/explorer_network.h"
+#include "graphdrl/planners/plan.h"
+
+namespace graphdrl {
+
+using SharedExplorer = std::shared_ptr<const ExplorerParameters>;
+
+// The policy file that is part of the program, policies/explorer.safetensors; made at build time.
+std::string_view builtin_explorer_file();
+SharedExplorer builtin_explorer();
+
+// Whether a policy file holds an explorer. Throws Error where it holds no policy.
+bool is_explorer_file(const std::string& path);
+
+// An explorer from a policy file. Throws Error.
+SharedExplorer read_explorer_file(const std::string& path);
+
+// An explorer at work: its network, and what it keeps for each world, which must outlive it. Not thread safe.
+class ExplorerGuide {
+ public:
+  explicit ExplorerGuide(SharedExplorer parameters) : parameters_(std::move(parameters)) {
+    network_.set_parameters(*parameters_);
+  }
+
+  ExplorerEncoder& encoder_for(const World& world) { return encoders_.try_emplace(&world, world).first->second; }
+
+  // How many nodes the best walk after each first visit falls short of its state's ceiling.
+  void score(const ExplorerBatch& batch, std::vector<float>& shortfall) {
+    shortfall.resize(static_cast<std::size_t>(batch.visit_count()));
+    network_.forward(batch, shortfall);
+  }
+
+ private:
+  SharedExplorer parameters_;
+  ExplorerNetwork network_;
+  std::map<const World*, ExplorerEncoder> encoders_;
+};
+
+// The explorer alone: at every first visit, the one that the network says leads to most; the nearest among equals.
+class ExplorerPolicy final : public PlanPolicy {
+ public:
+  explicit ExplorerPolicy(SharedExplorer parameters) : guide_(std::move(parameters)) {}
+
+  Plan plan(const SearchStart& start) override;
+
+ private:
+  ExplorerGuide guide_;
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,164 @@
+#include "graphdrl/train/explorer_learner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace graphdrl {
+namespace {
+
+constexpr double kHuberKnee = 2;  // nodes
+constexpr double kFarShort = 4;   // nodes: where even the best falls this short, values count half
+
+double huber(double error) {
+  const double size = std::abs(error);
+  return size < kHuberKnee ? error * error / 2 : kHuberKnee * (size - kHuberKnee / 2);
+}
+
+double huber_slope(double error) {
+  return std::clamp(error, -kHuberKnee, kHuberKnee);
+}
+
+// The labelled first visits of one state.
+struct Labelled {
+  std::vector<std::size_t> visits;  // places in the batch
+  double mean_label = 0;
+  double mean_shortfall = 0;
+  double least_label = 0;
+  double least_shortfall = 0;
+};
+
+// Calls visit(labelled) for every state that has a label. Visits of a state stand together.
+template <typename Visit>
+void for_each_state(const ExplorerBatch& batch, std::span<const float> label, std::span<const float> shortfall,
+                    const Visit& visit) {
+  Labelled state;
+  for (std::size_t v = 0; v < label.size();) {
+    state.visits.clear();
+    const int index = batch.state[v];
+    for (; v < label.size() && batch.state[v] == index; ++v) {
+      if (!std::isnan(label[v])) state.visits.push_back(v);
+    }
+    if (state.visits.empty()) continue;
+    state.mean_label = state.mean_shortfall = 0;
+    state.least_label = label[state.visits[0]];
+    state.least_shortfall = shortfall[state.visits[0]];
+    const auto count = static_cast<double>(state.visits.size());
+    for (const std::size_t at : state.visits) {
+      state.mean_label += label[at] / count;
+      state.mean_shortfall += shortfall[at] / count;
+      state.least_label = std::min<double>(state.least_label, label[at]);
+      state.least_shortfall = std::min<double>(state.least_shortfall, shortfall[at]);
+    }
+    visit(state);
+  }
+}
+
+}  // namespace
+
+double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, std::span<const float> shortfall,
+                     double ranking, std::span<float> grad) {
+  const double states = batch.graphs.graph_count();
+  double loss = 0;
+  std::fill(grad.begin(), grad.end(), 0.0f);
+  for_each_state(batch, label, shortfall, [&](const Labelled& state) {
+    const auto count = static_cast<double>(state.visits.size());
+    const double value_weight = 1 / (1 + std::max(0.0, state.least_label) / kFarShort) / count / states;
+    const double deviation_weight = 1 / count / states;
+    double mean_slope = 0;
+    double label_sum = 0;
+    double shortfall_sum = 0;
+    const auto odds = [](double above_least) { return std::exp(-above_least / kRankingTemperature); };
+    for (const std::size_t v : state.visits) {
+      const double deviation = (double{shortfall[v]} - state.mean_shortfall) - (double{label[v]} - state.mean_label);
+      mean_slope += huber_slope(deviation) / count;
+      label_sum += odds(label[v] - state.least_label);
+      shortfall_sum += odds(shortfall[v] - state.least_shortfall);
+    }
+    for (const std::size_t v : state.visits) {
+      const double error = double{shortfall[v]} - label[v];
+      const double deviation = error - (state.mean_shortfall - state.mean_label);
+      const double goal = odds(label[v] - state.least_label) / label_sum;
+      const double share = odds(shortfall[v] - state.least_shortfall) / shortfall_sum;
+      loss += value_weight * huber(error) + deviation_weight * huber(deviation) -
+              ranking / states * goal * std::log(std::max(share, 1e-30));
+      grad[v] = static_cast<float>(value_weight * huber_slope(error) +
+                                   deviation_weight * (huber_slope(deviation) - mean_slope) +
+                                   ranking / states * (goal - share) / kRankingTemperature);
+    }
+  });
+  return loss;
+}
+
+ExplorerLearner::ExplorerLearner(const ExplorerLearnerOptions& options, Rng& rng)
+    : options_(options), online_(rng), target_(online_), adam_(online_.values().size(), {}) {
+  update();
+}
+
+void ExplorerLearner::update() {
+  network_.set_parameters(online_);
+  if (options_.bootstrap) target_network_.set_parameters(target_);
+}
+
+double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rate) {
+  if (options_.bootstrap) {
+    bootstrap_labels(lessons);
+  } else {
+    batch_.clear();
+    label_.clear();
+    for (const Lesson* const lesson : lessons) {
+      lesson->append_to(batch_);
+      label_.insert(label_.end(), lesson->shortfall.begin(), lesson->shortfall.end());
+    }
+  }
+  shortfall_.resize(label_.size());
+  grad_shortfall_.resize(label_.size());
+  network_.forward(batch_, shortfall_, /*keep=*/true);
+  const double loss = explorer_loss(batch_, label_, shortfall_, options_.ranking, grad_shortfall_);
+  regret_ = 0;
+  for_each_state(batch_, label_, shortfall_, [&](const Labelled& state) {
+    const std::size_t choice =
+        *std::min_element(state.visits.begin(), state.visits.end(),
+                          [&](std::size_t a, std::size_t b) { return shortfall_[a] < shortfall_[b]; });
+    regret_ += (label_[choice] - state.least_label) / static_cast<double>(lessons.size());
+  });
+  network_.backward(batch_, grad_shortfall_, grad_);
+  adam_.set_learning_rate(rate);
+  adam_.step(grad_.values(), online_.values());
+  if (options_.bootstrap) soft_update(online_.values(), options_.soft_update, target_.values());
+  update();
+  return loss;
+}
+
+void ExplorerLearner::bootstrap_labels(std::span<const Lesson* const> lessons) {
+  batch_.clear();
+  next_.clear();
+  for (const Lesson* const lesson : lessons) {
+    const FirstVisit choice = lesson->append_to(batch_)[lesson->choice];
+    Lesson after = *lesson;
+    visit(after, choice);
+    after.append_to(next_);
+  }
+  const auto next_count = static_cast<std::size_t>(next_.visit_count());
+  std::vector<float> online(next_count);
+  std::vector<float> target(next_count);
+  network_.forward(next_, online);
+  target_network_.forward(next_, target);
+  label_.assign(static_cast<std::size_t>(batch_.visit_count()), kUnlabelled);
+  std::size_t first = 0;  // of a lesson's visits in batch_
+  std::size_t next = 0;   // and in next_
+  for (std::size_t i = 0; i < lessons.size(); ++i) {
+    const int index = static_cast<int>(i);
+    double gain = 1;
+    if (next < next_count && next_.state[next] == index) {
+      std::size_t best = next;
+      for (; next < next_count && next_.state[next] == index; ++next) {
+        if (online[next] < online[best]) best = next;
+      }
+      gain += next_.ceiling[i] - target[best];
+    }
+    label_[first + static_cast<std::size_t>(lessons[i]->choice)] = static_cast<float>(batch_.ceiling[i] - gain);
+    while (first < label_.size() && batch_.state[first] == index) ++first;
+  }
+}
+
+}  // namespace graphdrl

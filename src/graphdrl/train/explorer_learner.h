@@ -1,0 +1,66 @@
+// One learning step of the explorer: the loss over a minibatch of lessons, its gradient, Adam.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "graphdrl/nn/explorer_network.h"
+#include "graphdrl/train/adam.h"
+#include "graphdrl/train/lessons.h"
+
+namespace graphdrl {
+
+inline constexpr double kRankingTemperature = 0.5;  // nodes
+
+// The loss over states, and its derivative by `shortfall`. label, shortfall, grad: [C]; kUnlabelled ones count for
+// nothing. A state's loss is the sum of three means over its first visits:
+// - Huber's loss [1964, linear past 2 nodes] of shortfall - label, weighed less where even the best falls far short;
+// - the same of the deviations from their means: which first visit is better by how much;
+// - `ranking` times the cross-entropy of softmax(-shortfall / 0.5) from softmax(-label / 0.5): which one is best.
+double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, std::span<const float> shortfall,
+                     double ranking, std::span<float> grad);
+
+struct ExplorerLearnerOptions {
+  bool bootstrap = false;  // Double DQN: values from the network's own, instead of the lessons'
+  double ranking = 1;
+  double soft_update = 5e-3;  // of the target network, with bootstrap
+};
+
+class ExplorerLearner {
+ public:
+  ExplorerLearner(const ExplorerLearnerOptions& options, Rng& rng);
+  ExplorerLearner(const ExplorerLearner&) = delete;
+
+  // One step at this learning rate; gives the loss before it.
+  double learn(std::span<const Lesson* const> lessons, double rate);
+
+  // Of the last step: nodes lost where the choice of the network in training mode is not the best labelled one; a mean
+  // over states.
+  double regret() const { return regret_; }
+
+  ExplorerParameters& online() { return online_; }
+  ExplorerParameters& target() { return target_; }
+  Adam& adam() { return adam_; }
+  void update();  // after every change of the parameters
+
+ private:
+  // Double DQN [van Hasselt et al. 2016] over first visits, undiscounted: what a first visit is worth by the target
+  // network's value of the one that the online network would make next. Every other one stays unlabelled.
+  void bootstrap_labels(std::span<const Lesson* const> lessons);
+
+  ExplorerLearnerOptions options_;
+  ExplorerParameters online_;
+  ExplorerParameters target_;
+  ExplorerParameters grad_;
+  Adam adam_;
+  ExplorerNetwork network_;
+  ExplorerNetwork target_network_;
+  ExplorerBatch batch_;
+  ExplorerBatch next_;
+  std::vector<float> label_;      // [C]
+  std::vector<float> shortfall_;  // [C]
+  std::vector<float> grad_shortfall_;
+  double regret_ = 0;
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,62 @@
+// Everything the training of the explorer can be told, in one table, as in train_options.h.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "graphdrl/env/world_families.h"
+
+namespace graphdrl {
+
+// The defaults train for half an hour on two cores.
+struct ExplorerOptions {
+  std::string preset = "explorer";
+  std::uint64_t seed = 1;
+  std::int64_t rounds = 400;
+  std::int64_t largest = 11;
+  std::string teacher = "search";
+  std::int64_t teacher_width = 24;
+  double ranking = 1;
+  double lead = 0.6;
+  std::int64_t walks = 512;
+  std::int64_t updates = 400;
+  std::int64_t states = 64;
+  std::int64_t memory = 200'000;
+  double rate = 2e-3;
+  std::int64_t save_every = 20;
+};
+
+template <typename Options, typename Field>
+void for_each_explorer_field(Options& options, Field&& field) {
+  field("preset", options.preset,
+        "What to train: explorer, on random worlds of every kind, or paper (also chosen by its own options)");
+  field("seed", options.seed,
+        "The same seed gives the same policy file, byte for byte (same build and machine, --device cpu)");
+  field("rounds", options.rounds, "Rounds of walks and updates; the learning rate falls over all of them");
+  field("largest", options.largest, "Largest side of training grids; graphs have up to seven times as many nodes");
+  field("teacher", options.teacher,
+        "Where values come from: search, or double_dqn, bootstrapped from the network's own");
+  field("teacher_width", options.teacher_width, "Width of the beam that values a first visit");
+  field("ranking", options.ranking, "Weight of the loss on which first visit is best, beside that on values");
+  field("lead", options.lead, "Share of walks that the network leads");
+  field("walks", options.walks, "Random walks per round");
+  field("updates", options.updates, "Learning steps per round");
+  field("states", options.states, "States per learning step");
+  field("memory", options.memory, "States remembered");
+  field("rate", options.rate, "Adam's learning rate at the start");
+  field("save_every", options.save_every, "Rounds between checkpoints");
+}
+
+// Throws Error, naming the option, on a value out of range.
+void validate(const ExplorerOptions& options);
+
+// The worlds trained on, each as likely as any other.
+std::vector<WorldSpec> training_worlds(const ExplorerOptions& options);
+
+void write_config(const std::filesystem::path& path, const ExplorerOptions& options);
+// Throws Error on a missing, unknown or mistyped key.
+ExplorerOptions read_explorer_config(const std::filesystem::path& path);
+
+}  // namespace graphdrl

@@ -1,0 +1,121 @@
+#include "graphdrl/train/lessons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "graphdrl/planners/beam.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::size_t kNearestLabelled = 3;
+constexpr std::size_t kMostLabelled = 6;
+
+SearchStart search_start_of(const Lesson& walk) {
+  SearchStart start{
+      .world = &walk.at->world, .position = walk.position, .visited = {}, .budget_left = std::max(0.0, walk.spendable)};
+  for (NodeId node = 0; node < walk.at->world.graph().node_count(); ++node) {
+    start.visited.push_back((walk.visited[node / 64] >> (node % 64) & 1) != 0);
+  }
+  return start;
+}
+
+// How many nodes a beam visits from here.
+int gain_by_search(const Lesson& walk, int width) {
+  const SearchStart start = search_start_of(walk);
+  const auto before = std::count(start.visited.begin(), start.visited.end(), true);
+  const Plan plan = *beam_plan(start, {.width = width});
+  return visited_after(start, plan.walk) - static_cast<int>(before);
+}
+
+}  // namespace
+
+void visit(Lesson& walk, const FirstVisit& first) {
+  walk.visited[first.node / 64] |= std::uint64_t{1} << (first.node % 64);
+  walk.position = first.node;
+  walk.spendable -= first.cost;
+}
+
+LessonWorld::LessonWorld(const WorldSpec& spec, std::uint64_t of_seed)
+    : seed(of_seed), rng(of_seed), world(random_world(spec, rng)), encoder(world) {}
+
+std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerParameters& parameters,
+                                 std::uint64_t seed) {
+  const auto at = std::make_shared<LessonWorld>(options.worlds[seed % options.worlds.size()], seed);
+  const World& world = at->world;
+  Rng rng = at->rng;
+  const auto chance = [&](double p) { return rng.uniform() < p; };
+  // No ownership: the parameters stay the caller's.
+  ExplorerGuide guide(SharedExplorer(std::shared_ptr<void>(), &parameters));
+  const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
+  const double ratio = options.least_budget + (options.most_budget - options.least_budget) * rng.uniform();
+  Lesson walk{.at = at,
+              .visited = std::vector<std::uint64_t>((static_cast<std::size_t>(world.graph().node_count()) + 63) / 64),
+              .position = start,
+              .spendable = spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
+              .scope = kExplorerScope,
+              .choice = 0,
+              .shortfall = {}};
+  visit(walk, {start, 0});
+  if (chance(0.5)) {
+    walk.scope = options.least_scope +
+                 static_cast<int>(rng.below(static_cast<std::uint32_t>(kExplorerScope - options.least_scope)));
+  }
+  const bool by_network = chance(options.lead);
+  const double share = static_cast<double>(options.states_per_walk) / (std::min(ratio, 1.0) * world.valid_count());
+
+  std::vector<Lesson> lessons;
+  ExplorerBatch batch;
+  std::vector<float> shortfall;
+  for (;;) {
+    batch.clear();
+    const auto visits = walk.append_to(batch);
+    if (visits.empty()) return lessons;
+    Lesson lesson = walk;
+    const bool kept = chance(share) && (visits.size() > 1 || options.teacher_width == 0);
+    const bool taught = kept && options.teacher_width > 0;
+    if (taught) {
+      lesson.shortfall.assign(visits.size(), kUnlabelled);
+      std::vector<std::size_t> order(visits.size());
+      std::iota(order.begin(), order.end(), std::size_t{0});
+      // The nearest ones, and others drawn at random.
+      for (std::size_t i = kNearestLabelled; i + 1 < order.size(); ++i) {
+        std::swap(order[i], order[i + rng.below(static_cast<std::uint32_t>(order.size() - i))]);
+      }
+      if (order.size() > kMostLabelled) order.resize(kMostLabelled);
+      for (const std::size_t first : order) {
+        Lesson after = walk;
+        visit(after, visits[first]);
+        const int gain = 1 + gain_by_search(after, options.teacher_width);
+        lesson.shortfall[first] = static_cast<float>(batch.ceiling[0] - gain);
+      }
+    }
+    std::size_t choice = 0;
+    if (chance(options.explore)) {
+      choice = rng.below(static_cast<std::uint32_t>(visits.size()));
+    } else if (by_network) {
+      guide.score(batch, shortfall);
+      choice = std::min_element(shortfall.begin(), shortfall.end()) - shortfall.begin();
+    } else if (taught) {
+      for (std::size_t first = 0; first < visits.size(); ++first) {  // the first of all has a label
+        if (lesson.shortfall[first] < lesson.shortfall[choice]) choice = first;
+      }
+    } else {
+      const float* const x = batch.visit_x.data();  // cost and the change of penalties, as a beam ranks them
+      const auto rank = [&](std::size_t first) {
+        const float* const row = x + first * kExplorerVisitFeatureCount;
+        return 8 * row[0] + 4 * row[1];
+      };
+      for (std::size_t first = 1; first < visits.size(); ++first) {
+        if (rank(first) < rank(choice)) choice = first;
+      }
+    }
+    lesson.choice = static_cast<int>(choice);
+    if (kept) lessons.push_back(std::move(lesson));
+    visit(walk, visits[choice]);
+  }
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,62 @@
+// What the explorer learns from: states met on the way through random worlds, with what first visits are worth by
+// search. Values taught by search go on rising where values bootstrapped from the network's own stall
+// (docs/explorer.md).
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "graphdrl/env/world_families.h"
+#include "graphdrl/nn/explorer_network.h"
+
+namespace graphdrl {
+
+struct LessonOptions {
+  std::vector<WorldSpec> worlds;  // drawn from with equal chances
+  double least_budget = 0.5;      // times valid nodes and mean cost
+  double most_budget = 1.7;
+  int least_scope = 24;     // half of the walks are seen through a smaller scope than the explorer's, at least this
+  int states_per_walk = 6;  // kept, about, of each walk
+  int teacher_width = 32;   // of the beam that values a first visit; 0 to value none
+  double lead = 0.6;        // chance of a walk to be led by the network, else by penalties and search
+  double explore = 0.15;    // chance of a random first visit on the way
+};
+
+inline constexpr float kUnlabelled = std::numeric_limits<float>::quiet_NaN();
+
+// The world of a lesson, drawn again from its seed at any time.
+struct LessonWorld {
+  LessonWorld(const WorldSpec& spec, std::uint64_t seed);
+
+  std::uint64_t seed;
+  Rng rng;  // as the world left it: draws the walk
+  World world;
+  ExplorerEncoder encoder;
+};
+
+// One state and what its first visits are worth. Small: features are built when it is used.
+struct Lesson {
+  std::shared_ptr<LessonWorld> at;
+  std::vector<std::uint64_t> visited;  // a bit per node
+  NodeId position;
+  double spendable;
+  int scope;                     // nodes the network looks at
+  int choice = 0;                // the first visit made, by its place among all, nearest first
+  std::vector<float> shortfall;  // by first visit; kUnlabelled for some where there are more than six, empty without a
+                                 // teacher
+
+  // Appends the state; gives its first visits, until the encoder's next call.
+  std::span<const FirstVisit> append_to(ExplorerBatch& batch) const {
+    return at->encoder.append({visited.data(), position, spendable}, scope, batch);
+  }
+};
+
+// Goes on with a first visit.
+void visit(Lesson& walk, const FirstVisit& first);
+
+// The lessons of one random walk, which the network of these parameters may lead. The same for the same seed.
+std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerParameters& parameters,
+                                 std::uint64_t seed);
+
+}  // namespace graphdrl

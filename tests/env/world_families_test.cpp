@@ -1,0 +1,75 @@
+#include "graphdrl/env/world_families.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "graphdrl/graph/search.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using testing::HasSubstr;
+
+// Spells a world out: the same text for the same world only.
+std::string spelled(const World& world) {
+  std::string text = std::to_string(world.graph().node_count());
+  for (const bool blocked : world.blocked()) text += blocked ? '#' : '.';
+  for (const Edge& edge : world.open().edges()) {
+    text += ' ' + std::to_string(edge.a) + '-' + std::to_string(edge.b) + ':' + std::to_string(edge.cost);
+  }
+  return text;
+}
+
+TEST(WorldFamilies, GiveConnectedWorldsThatAreTheSameEveryTime) {
+  for (const WorldFamily& family : world_families()) {
+    for (const bool weighted : {false, true}) {
+      for (const bool directed : {false, true}) {
+        if (family.grid && (weighted || directed)) continue;
+        const WorldSpec spec{std::string(family.name), family.grid ? 9 : 40, weighted, directed};
+        std::set<std::string> different;
+        for (int index = 0; index < 5; ++index) {
+          for (const Split split : {Split::kTrain, Split::kValidation, Split::kTest}) {
+            const World world = split_world(spec, split, index);
+            EXPECT_EQ(count_components(world.graph(), world.blocked()), 1) << spec.name();
+            EXPECT_EQ(world.graph().directed(), directed) << spec.name();
+            EXPECT_EQ(world.graph().weighted(), weighted) << spec.name();
+            EXPECT_EQ(spelled(world), spelled(split_world(spec, split, index)));
+            different.insert(spelled(world));
+          }
+        }
+        EXPECT_EQ(different.size(), 15u) << spec.name();
+      }
+    }
+  }
+}
+
+// Frozen splits: a change of any generator shows here.
+TEST(WorldFamilies, HaveFrozenSplits) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const WorldFamily& family : world_families()) {
+    const WorldSpec spec{std::string(family.name), family.grid ? 11 : 50, !family.grid, !family.grid};
+    const World world = split_world(spec, Split::kTest, 0);
+    for (NodeId node = 0; node < world.graph().node_count(); ++node) {
+      hash = (hash ^ static_cast<std::uint64_t>(world.is_blocked(node))) * 0x100000001b3ULL;
+      for (const NodeId next : world.open_neighbours(node)) {
+        hash = (hash ^ static_cast<std::uint64_t>(next)) * 0x100000001b3ULL;
+      }
+    }
+  }
+  EXPECT_EQ(hash, 2078563731331582081u);
+}
+
+TEST(WorldFamilies, SayWhatTheyDoNotHave) {
+  const auto message = [](const WorldSpec& spec) { return error_of([&] { split_world(spec, Split::kTest, 0); }); };
+  EXPECT_THAT(message({"cave", 9}), HasSubstr("no such family"));
+  EXPECT_THAT(message({"maze", 8}), HasSubstr("an odd number of cells a side"));
+  EXPECT_THAT(message({"tree", 1}), HasSubstr("nodes from 2"));
+  EXPECT_THAT(message({"rooms", 9, true}), HasSubstr("neither costs nor directions"));
+  EXPECT_THAT(message({"obstacles", 100'000}), HasSubstr("cells a side from 3 to 500"));
+}
+
+}  // namespace
+}  // namespace graphdrl

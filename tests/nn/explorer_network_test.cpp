@@ -1,0 +1,248 @@
+#include "graphdrl/nn/explorer_network.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/env/world_families.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+// A state some first visits into a walk.
+struct Walked {
+  Walked(const World& of, NodeId start, double budget) : world(of), visited((of.graph().node_count() + 63) / 64) {
+    visit(start, 0);
+    spendable = budget;
+  }
+  void visit(NodeId node, double cost) {
+    visited[node / 64] |= std::uint64_t{1} << (node % 64);
+    position = node;
+    spendable -= cost;
+  }
+  ExplorerState state() const { return {visited.data(), position, spendable}; }
+
+  const World& world;
+  std::vector<std::uint64_t> visited;
+  NodeId position = 0;
+  double spendable = 0;
+};
+
+std::vector<float> scores(const ExplorerParameters& parameters, const ExplorerBatch& batch) {
+  ExplorerNetwork network;
+  network.set_parameters(parameters);
+  std::vector<float> shortfall(static_cast<std::size_t>(batch.visit_count()));
+  network.forward(batch, shortfall);
+  return shortfall;
+}
+
+// Makes first visits drawn at random.
+void wander(Walked& walked, ExplorerEncoder& encoder, int visits, Rng& rng) {
+  for (; visits > 0; --visits) {
+    ExplorerBatch batch;
+    const auto found = encoder.append(walked.state(), kExplorerScope, batch);
+    if (found.empty()) return;
+    const FirstVisit visit = found[rng.below(static_cast<std::uint32_t>(found.size()))];
+    walked.visit(visit.node, visit.cost);
+  }
+}
+
+TEST(ExplorerFeatures, AreWorkedOutByHand) {
+  // S . .    From S with 4 steps to spend: its right neighbour and the one below are the first visits.
+  // . # .
+  const World world = grid_world("...\n.#.\n");
+  ExplorerEncoder encoder(world);
+  const Walked walked(world, 0, 4);
+  ExplorerBatch batch;
+  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
+  ASSERT_EQ(visits.size(), 2u);
+  EXPECT_EQ(visits[0].node, 1);
+  EXPECT_EQ(visits[1].node, 3);
+  EXPECT_EQ(batch.graphs.node_count(), 5);
+  EXPECT_EQ(batch.ceiling, std::vector<double>{4});
+  const auto feature = [&](int row, std::string_view name) {
+    const auto at = std::find(kExplorerNodeFeatures.begin(), kExplorerNodeFeatures.end(), name);
+    return batch
+        .node_x[static_cast<std::size_t>(row * kExplorerNodeFeatureCount + (at - kExplorerNodeFeatures.begin()))];
+  };
+  const auto count = [](int nodes) { return static_cast<float>(std::log1p(nodes) / 4); };
+  // Rows are nodes 0, 1, 2, 3, 5.
+  EXPECT_EQ(feature(0, "unvisited"), 0);
+  EXPECT_EQ(feature(0, "current"), 1);
+  EXPECT_EQ(feature(0, "distance_to_work"), 1.0f / 8);
+  EXPECT_EQ(feature(1, "candidate"), 1);
+  EXPECT_EQ(feature(1, "visit_cost"), 1.0f / 8);
+  EXPECT_EQ(feature(2, "candidate"), 0);
+  EXPECT_EQ(feature(2, "distance"), 2.0f / 8);
+  EXPECT_EQ(feature(3, "isolated"), 1);
+  EXPECT_EQ(feature(2, "part_size"), count(3));
+  EXPECT_EQ(feature(3, "part_size"), count(1));
+  EXPECT_EQ(feature(1, "hanging_size"), count(3));  // 1, 2 and 5 can only be left by the way one came
+  EXPECT_EQ(feature(5 - 1, "hanging_size"), count(1));
+  EXPECT_EQ(feature(1, "hanging_height"), 3.0f / 8);
+  EXPECT_EQ(feature(4, "budget_per_work"), 1);
+  EXPECT_EQ(feature(4, "slack"), 0);
+  // Of the visit to node 3: nothing unvisited next to it, and two steps back and on to node 1.
+  const float* const to_3 = batch.visit_x.data() + kExplorerVisitFeatureCount;
+  EXPECT_EQ(to_3[0], 1.0f / 8);
+  EXPECT_EQ(to_3[1], -4.0f / 4);  // an isolated node less
+  EXPECT_EQ(to_3[3], 2.0f / 8);
+}
+
+TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
+  const World world = grid_world(std::string(200, '.') + "\n");
+  ExplorerEncoder encoder(world);
+  ExplorerBatch batch;
+  encoder.append(Walked(world, 100, 5).state(), kExplorerScope, batch);
+  EXPECT_EQ(batch.graphs.graph(0).node_count(), 11);
+  encoder.append(Walked(world, 100, 500).state(), kExplorerScope, batch);
+  EXPECT_EQ(batch.graphs.graph(1).node_count(), kExplorerScope);
+  // Far from any unvisited node, the scope grows until a first visit is in it.
+  Walked walked(world, 0, 1000);
+  for (NodeId node = 1; node < 150; ++node) walked.visit(node, 1);
+  walked.visit(0, 149);
+  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
+  ASSERT_EQ(visits.size(), 1u);
+  EXPECT_EQ(visits[0].node, 150);
+  EXPECT_FALSE(encoder.overlooked());
+  EXPECT_EQ(batch.graphs.graph(2).node_count(), 151);
+
+  // A star of 200 leaves, all of them first visits: more than the scope holds.
+  std::vector<Edge> rays;
+  for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf});
+  const World star("star", Graph::from_edges(201, rays), std::vector<bool>(201));
+  ExplorerEncoder star_encoder(star);
+  EXPECT_EQ(star_encoder.append(Walked(star, 0, 9).state(), kExplorerScope, batch).size(), kExplorerScope - 1u);
+  EXPECT_TRUE(star_encoder.overlooked());
+}
+
+TEST(ExplorerNetwork, DoesNotDependOnHowNodesAreNumbered) {
+  Rng rng(1);
+  const ExplorerParameters parameters(rng);
+  int compared = 0;
+  for (const char* const family : {"erdos-renyi", "barabasi-albert", "geometric"}) {
+    for (const bool directed : {false, true}) {
+      const World world = split_world({family, 40, true, directed}, Split::kValidation, 0);
+      const NodeId nodes = world.graph().node_count();
+      std::vector<NodeId> number(static_cast<std::size_t>(nodes));
+      std::iota(number.begin(), number.end(), 0);
+      for (NodeId i = nodes - 1; i > 0; --i) std::swap(number[i], number[rng.below(static_cast<std::uint32_t>(i + 1))]);
+      std::vector<Edge> edges = world.graph().edges();
+      for (Edge& edge : edges) edge = {number[edge.a], number[edge.b], edge.cost};
+      const EdgeKind kind = directed ? EdgeKind::kDirected : EdgeKind::kUndirected;
+      const World renumbered("renumbered", Graph::from_edges(nodes, edges, kind), std::vector<bool>(nodes));
+      ExplorerEncoder encoder(world);
+      ExplorerEncoder other(renumbered);
+      Walked walked(world, 0, 0.9 * nodes * world.open().mean_cost());
+      wander(walked, encoder, 8, rng);
+      Walked same(renumbered, number[walked.position], walked.spendable);
+      for (NodeId node = 0; node < nodes; ++node) {
+        if ((walked.visited[node / 64] >> (node % 64) & 1) != 0) same.visit(number[node], 0);
+      }
+      same.position = number[walked.position];
+      ExplorerBatch batch;
+      ExplorerBatch same_batch;
+      const auto found = encoder.append(walked.state(), kExplorerScope, batch);
+      const auto same_found = other.append(same.state(), kExplorerScope, same_batch);
+      const std::vector<float> score = scores(parameters, batch);
+      const std::vector<float> same_score = scores(parameters, same_batch);
+      ASSERT_EQ(found.size(), same_found.size());
+      compared += static_cast<int>(found.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        const auto twin = std::find_if(same_found.begin(), same_found.end(),
+                                       [&](const FirstVisit& visit) { return visit.node == number[found[i].node]; });
+        ASSERT_NE(twin, same_found.end());
+        EXPECT_NEAR(score[i], same_score[twin - same_found.begin()], 1e-5);
+      }
+    }
+  }
+  EXPECT_GT(compared, 20);
+}
+
+// States of several worlds, one of them seen in part.
+struct Sample {
+  Sample() {
+    Rng rng(2);
+    for (const WorldSpec& spec :
+         {WorldSpec{"obstacles", 6}, WorldSpec{"tree", 30}, WorldSpec{"geometric", 25, true, true}}) {
+      worlds.push_back(split_world(spec, Split::kValidation, 1));
+    }
+    for (const World& world : worlds) encoders.emplace_back(world);
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+      Walked walked(worlds[i], worlds[i].valid_nodes()[0], worlds[i].valid_count() * worlds[i].open().mean_cost());
+      wander(walked, encoders[i], 5, rng);
+      encoders[i].append(walked.state(), i == 1 ? 12 : kExplorerScope, batch);
+    }
+  }
+  std::vector<World> worlds;
+  std::deque<ExplorerEncoder> encoders;
+  ExplorerBatch batch;
+};
+
+TEST(ExplorerNetwork, GivesTheSameBytesForAnyNumberOfThreads) {
+  const Sample sample;
+  Rng rng(3);
+  const ExplorerParameters parameters(rng);
+  const std::vector<float> together = scores(parameters, sample.batch);
+  for (const int count : {2, 3}) {
+    set_threads(count);
+    EXPECT_EQ(scores(parameters, sample.batch), together) << count << " threads";
+  }
+  set_threads(1);
+}
+
+TEST(ExplorerNetwork, HasTheGradientOfItsOutput) {
+  const Sample sample;
+  Rng rng(4);
+  ExplorerParameters parameters(rng);
+  std::vector<float> weighting(static_cast<std::size_t>(sample.batch.visit_count()));
+  for (float& weight : weighting) weight = static_cast<float>(2 * rng.uniform() - 1);
+  ExplorerNetwork network;
+  network.set_parameters(parameters);
+  std::vector<float> shortfall(weighting.size());
+  network.forward(sample.batch, shortfall, /*keep=*/true);
+  ExplorerParameters grad;
+  network.backward(sample.batch, weighting, grad);
+  const auto loss = [&] {
+    const std::vector<float> score = scores(parameters, sample.batch);
+    return std::inner_product(score.begin(), score.end(), weighting.begin(), 0.0);
+  };
+  // Along a random direction within each tensor; single values would drown in float32's rounding.
+  for (const TensorSpec& spec : ExplorerParameters::specs()) {
+    std::vector<float> direction(spec.size);
+    double expected = 0;
+    for (std::size_t i = 0; i < spec.size; ++i) {
+      direction[i] = rng.below(2) == 0 ? 1.0f : -1.0f;
+      expected += double{direction[i]} * grad.values()[spec.offset + i];
+    }
+    const std::vector<float> kept(parameters.values().begin(), parameters.values().end());
+    const auto loss_at = [&](float step) {
+      for (std::size_t i = 0; i < spec.size; ++i) {
+        parameters.values()[spec.offset + i] = kept[spec.offset + i] + step * direction[i];
+      }
+      return loss();
+    };
+    constexpr float kStep = 3e-4f;
+    const double slope = (loss_at(kStep) - loss_at(-kStep)) / (2 * kStep);
+    loss_at(0);
+    EXPECT_NEAR(slope, expected, 5e-2 * (0.1 + std::abs(expected))) << spec.name;
+  }
+}
+
+TEST(ExplorerParameters, SurviveTheirPolicyFile) {
+  const TemporaryFolder folder;
+  Rng rng(5);
+  const ExplorerParameters parameters(rng);
+  write_policy_file(folder / "policy", parameters);
+  const ExplorerParameters read = read_explorer(Safetensors::read(folder / "policy"));
+  EXPECT_TRUE(std::ranges::equal(read.values(), parameters.values()));
+  EXPECT_LT(std::filesystem::file_size(folder / "policy"), 1'000'000u);
+}
+
+}  // namespace
+}  // namespace graphdrl
