@@ -1,5 +1,6 @@
-// The table of docs/explorer.md: the explorer and the planners on worlds of the test split.
-//   explorer_table [--policy FILE] [--quick]
+// The table of docs/explorer.md: the explorer and the planners on worlds of the test split, or, to choose among
+// variants, of the validation split.
+//   explorer_table [--policy FILE] [--validation] [--quick]
 // Every walk is walked through an Episode before it counts. Intervals are 95 % of the mean over worlds, a world's
 // figure being the mean over its starts.
 #include <fmt/format.h>
@@ -29,22 +30,31 @@ struct Case {
   std::string name;
   double budget;  // times the valid nodes and the mean cost, or steps where above 10
   int worlds;
-  int starts;  // per world
-  bool large = false;
+  int starts;   // per world
+  bool wide;    // with the wide beams
+  bool solved;  // with the optimum instead of the bound
   std::function<World(int)> world;
 };
 
-Case of_split(const WorldSpec& spec, double budget, int worlds, int starts, bool large = false) {
-  return {spec.name(), budget, worlds,
-          starts,      large,  [spec](int index) { return split_world(spec, Split::kTest, index); }};
+Split split_shown = Split::kTest;
+
+Case of_split(const WorldSpec& spec, double budget, int worlds, int starts, bool wide = false, bool solved = false) {
+  return {spec.name(),
+          budget,
+          worlds,
+          starts,
+          wide,
+          solved,
+          [spec](int index) { return split_world(spec, split_shown, index); }};
 }
 
 // One policy's walks over all worlds of a case.
 struct Column {
   std::string name;
   std::function<std::vector<NodeId>(const SearchStart&)> walk;
+  bool wide = false;
   std::vector<double> coverage{};  // by world, percent
-  std::vector<double> times_s{};
+  std::vector<double> times_ms{};  // by walk
   double visits = 0;
 };
 
@@ -62,25 +72,33 @@ std::string with_interval(const std::vector<double>& values) {
 }
 
 std::string difference(const Column& a, const Column& b) {
+  if (a.coverage.empty() || b.coverage.empty()) return "";
   std::vector<double> values;
   for (std::size_t i = 0; i < a.coverage.size(); ++i) values.push_back(a.coverage[i] - b.coverage[i]);
   return with_interval(values);
 }
 
-void print_case(const Case& one, const SharedExplorer& explorer) {
-  // Policies keep what they know of a world, so each world has its own.
-  std::vector<Column> columns = {
-      {"nearest", nearest_walk},
-      {"beam:50", [](const SearchStart& s) { return beam_plan(s, {.width = 50})->walk; }},
-      {"beam:1000", [&](const SearchStart& s) { return beam_plan(s, {.width = one.large ? 1 : 1000})->walk; }},
-      {"explorer", [&](const SearchStart& s) { return ExplorerPolicy(explorer).plan(s).walk; }},
-      {"guided:16", [&](const SearchStart& s) { return BeamPolicy({.width = 16}, explorer).plan(s).walk; }},
-      {"guided:50",
-       [&](const SearchStart& s) { return BeamPolicy({.width = one.large ? 16 : 50}, explorer).plan(s).walk; }},
+enum { kNearest, kBeam16, kBeam50, kBeam1000, kExplorer, kGuided16, kGuided50 };
+
+std::vector<Column> make_columns(const SharedExplorer& explorer) {
+  const auto beam = [](int width) {
+    return [width](const SearchStart& start) { return beam_plan(start, {.width = width})->walk; };
   };
+  // A policy keeps what it knows of a world, so each walk has its own.
+  const auto guided = [explorer](int width) {
+    return
+        [explorer, width](const SearchStart& start) { return BeamPolicy({.width = width}, explorer).plan(start).walk; };
+  };
+  const auto alone = [explorer](const SearchStart& start) { return ExplorerPolicy(explorer).plan(start).walk; };
+  return {{"nearest", nearest_walk},       {"beam:16", beam(16)}, {"beam:50", beam(50)},
+          {"beam:1000", beam(1000), true}, {"explorer", alone},   {"guided:16", guided(16)},
+          {"guided:50", guided(50), true}};
+}
+
+void print_case(const Case& one, const SharedExplorer& explorer) {
+  std::vector<Column> columns = make_columns(explorer);
   std::vector<double> bounds;
   double nodes = 0;
-  bool optimum = one.name.starts_with("obstacles-5") || one.name.starts_with("paper");
   for (int index = 0; index < one.worlds; ++index) {
     const World world = one.world(index);
     const double n = world.valid_count();
@@ -95,16 +113,20 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
       }
     }
     const auto share = 100 / n / static_cast<double>(starts.size());
-    for (Column& column : columns) column.coverage.push_back(0);
+    for (Column& column : columns) {
+      if (one.wide || !column.wide) column.coverage.push_back(0);
+    }
     bounds.push_back(0);
     for (const NodeId start : starts) {
       const SearchStart from = search_start(world, start, budget);
-      const std::optional<int> best = optimum ? exact_gain(from) : std::nullopt;
+      const std::optional<int> best = one.solved ? exact_gain(from) : std::nullopt;
       bounds.back() += share * (best ? *best + 1 : max_visited(from));
       for (Column& column : columns) {
+        if (column.wide && !one.wide) continue;
         const auto begin = std::chrono::steady_clock::now();
         const std::vector<NodeId> walk = column.walk(from);
-        column.times_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+        const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
+        column.times_ms.push_back(time.count());
         Episode check(world, {.budget = budget, .action_space = action_space_of(world)});
         follow_walk(check, walk);
         column.coverage.back() += share * check.visited_count();
@@ -113,50 +135,58 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
     }
   }
   std::string line = fmt::format("| {} | {:.0f} | {:g}{} |", one.name, nodes, one.budget, one.budget > 10 ? "" : "x");
-  for (const Column& column : columns) line += fmt::format(" {} |", with_interval(column.coverage));
-  line += fmt::format(" {:.1f}{} | {} | {} | {} |", summarise(bounds).mean, optimum ? " (optimum)" : "",
-                      difference(columns[3], columns[0]), difference(columns[4], columns[1]),
-                      difference(columns[5], columns[2]));
-  for (const Column& column : columns) line += fmt::format(" {:.2g}", 1e3 * median(column.times_s));
-  double total = 0;
-  for (const double time_s : columns[3].times_s) total += time_s;
-  line += fmt::format(" | {:.2f} |\n", 1e3 * total / columns[3].visits);
+  for (const Column& column : columns) {
+    line += fmt::format(" {} |", column.coverage.empty() ? "" : with_interval(column.coverage));
+  }
+  line +=
+      fmt::format(" {:.1f}{} | {} | {} | {} |", summarise(bounds).mean, one.solved ? " (optimum)" : "",
+                  difference(columns[kExplorer], columns[kNearest]), difference(columns[kGuided16], columns[kBeam16]),
+                  difference(columns[kGuided50], columns[kBeam1000]));
+  for (const int column : {kBeam50, kBeam1000, kExplorer, kGuided16, kGuided50}) {
+    const std::vector<double>& times = columns[column].times_ms;
+    line += times.empty() ? " |" : fmt::format(" {:.2g} |", median(times));
+  }
+  double total_ms = 0;
+  for (const double time_ms : columns[kExplorer].times_ms) total_ms += time_ms;
+  line += fmt::format(" {:.2f} |\n", total_ms / columns[kExplorer].visits);
   std::fputs(line.c_str(), stdout);
   std::fflush(stdout);
 }
 
 int print_table(const SharedExplorer& explorer, bool quick) {
   std::vector<Case> cases;
+  const int many = quick ? 30 : 300;
   const int some = quick ? 10 : 100;
   const int few = quick ? 5 : 40;
   const std::vector<World> paper = load_worlds({"paper"});
-  cases.push_back({"paper:a–j", 25, 10, kAllStarts, false, [&](int index) { return paper[index]; }});
-  cases.push_back(of_split({"obstacles", 5}, 1.1, quick ? 30 : 300, kAllStarts));
-  cases.push_back(of_split({"loop-maze", 11}, 1.0, some, 3));
-  cases.push_back(of_split({"loop-maze", 11}, 1.25, some, 3));
+  cases.push_back({"paper:a–j", 25, 10, kAllStarts, true, true, [&](int index) { return paper[index]; }});
+  cases.push_back(of_split({"obstacles", 5}, 1.1, many, kAllStarts, true, true));
+  cases.push_back(of_split({"loop-maze", 11}, 1.0, some, 1, true));
+  cases.push_back(of_split({"loop-maze", 11}, 1.25, some, 1, true));
   for (const char* const family : {"maze", "braided-maze", "rooms", "obstacles"}) {
-    cases.push_back(of_split({family, 11}, 1.0, some, 3));
+    cases.push_back(of_split({family, 11}, 1.0, some, 1, true));
   }
   for (const char* const family : {"tree", "erdos-renyi", "barabasi-albert", "watts-strogatz", "geometric"}) {
     for (const int nodes : {50, 200}) {
       for (const bool weighted : {false, true}) {
         for (const bool directed : {false, true}) {
           if (directed && family == std::string_view("tree")) continue;
-          cases.push_back(of_split({family, nodes, weighted, directed}, 1.0, nodes == 200 ? few / 2 : few, 2));
+          cases.push_back(of_split({family, nodes, weighted, directed}, 1.0, few, 1));
         }
       }
     }
   }
   for (const WorldSpec& spec : {WorldSpec{"obstacles", 60}, {"loop-maze", 61}, {"rooms", 60}}) {
-    cases.push_back(of_split(spec, 1.0, quick ? 2 : 8, 1, /*large=*/true));
+    cases.push_back(of_split(spec, 1.0, quick ? 2 : 8, 1));
   }
-  std::fputs(
-      "| worlds | nodes | budget | nearest | beam:50 | beam:1000 | explorer | guided:16 | guided:50 | bound | explorer "
-      "− "
-      "nearest | guided:16 − beam:50 | guided:50 − beam:1000 | milliseconds a plan, in the order of the columns | a "
-      "first visit of the explorer, ms "
-      "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-      stdout);
+  std::string header = "| worlds | nodes | budget |";
+  for (const Column& column : make_columns(explorer)) header += fmt::format(" {} |", column.name);
+  header +=
+      " bound | explorer − nearest | guided:16 − beam:16 | guided:50 − beam:1000 | ms: beam:50 | beam:1000 | explorer "
+      "| "
+      "guided:16 | guided:50 | a first visit of the explorer |\n|---|";
+  for (int i = 0; i < 19; ++i) header += "---|";
+  std::fputs((header + '\n').c_str(), stdout);
   for (const Case& one : cases) print_case(one, explorer);
   return 0;
 }
@@ -172,10 +202,12 @@ int main(int argc, char** argv) {
     const std::string_view argument = argv[i];
     if (argument == "--quick") {
       quick = true;
+    } else if (argument == "--validation") {
+      split_shown = Split::kValidation;
     } else if (argument == "--policy" && i + 1 < argc) {
       explorer = read_explorer_file(argv[++i]);
     } else {
-      std::fputs("usage: explorer_table [--policy FILE] [--quick]\n", stderr);
+      std::fputs("usage: explorer_table [--policy FILE] [--validation] [--quick]\n", stderr);
       return 2;
     }
   }

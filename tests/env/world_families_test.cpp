@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "graphdrl/graph/search.h"
@@ -50,16 +51,21 @@ TEST(WorldFamilies, GiveConnectedWorldsThatAreTheSameEveryTime) {
 TEST(WorldFamilies, HaveFrozenSplits) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const WorldFamily& family : world_families()) {
-    const WorldSpec spec{std::string(family.name), family.grid ? 11 : 50, !family.grid, !family.grid};
-    const World world = split_world(spec, Split::kTest, 0);
-    for (NodeId node = 0; node < world.graph().node_count(); ++node) {
-      hash = (hash ^ static_cast<std::uint64_t>(world.is_blocked(node))) * 0x100000001b3ULL;
-      for (const NodeId next : world.open_neighbours(node)) {
-        hash = (hash ^ static_cast<std::uint64_t>(next)) * 0x100000001b3ULL;
+    for (const bool plain : {true, false}) {
+      if (family.grid && !plain) continue;
+      const WorldSpec spec{std::string(family.name), family.grid ? 11 : 50, !plain, !plain};
+      const World world = split_world(spec, Split::kTest, 0);
+      const auto add = [&](std::uint64_t value) { hash = (hash ^ value) * 0x100000001b3ULL; };
+      for (NodeId node = 0; node < world.graph().node_count(); ++node) {
+        add(world.is_blocked(node));
+        for (int i = 0; i < world.open().degree(node); ++i) {
+          add(static_cast<std::uint64_t>(world.open_neighbours(node)[i]));
+          add(static_cast<std::uint64_t>(std::llround(1e6 * world.open().cost(node, i))));
+        }
       }
     }
   }
-  EXPECT_EQ(hash, 2078563731331582081u);
+  EXPECT_EQ(hash, 5772697023042949595u);
 }
 
 TEST(WorldFamilies, SayWhatTheyDoNotHave) {

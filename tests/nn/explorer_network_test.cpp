@@ -196,6 +196,46 @@ TEST(ExplorerNetwork, GivesTheSameBytesForAnyNumberOfThreads) {
   set_threads(1);
 }
 
+TEST(ExplorerNetwork, IsItsHeadOnTheConvolution) {
+  const Sample sample;
+  const ExplorerBatch& batch = sample.batch;
+  Rng rng(6);
+  const ExplorerParameters parameters(rng);
+  constexpr int kWidth = kExplorerConvShape.width;
+  GatedGraphConv<float> conv(kExplorerConvShape);
+  conv.set_weights(parameters.conv("conv"));
+  std::vector<float> embedded(static_cast<std::size_t>(batch.graphs.node_count()) * kWidth);
+  conv.forward(batch.graphs, batch.node_x.data(), embedded.data(), /*keep=*/false);
+  const std::vector<float> score = scores(parameters, batch);
+  for (int v = 0; v < batch.visit_count(); ++v) {
+    const int graph = batch.state[v];
+    std::vector<double> input;
+    const auto add = [&](const float* values, int count) { input.insert(input.end(), values, values + count); };
+    add(&embedded[batch.target[v] * kWidth], kWidth);
+    add(&embedded[batch.current[graph] * kWidth], kWidth);
+    const int first = batch.graphs.first_node(graph);
+    const int end = batch.graphs.first_node(graph + 1);
+    for (int i = 0; i < kWidth; ++i) {
+      double sum = 0;
+      for (int row = first; row < end; ++row) sum += embedded[row * kWidth + i];
+      input.push_back(sum / (end - first));
+    }
+    add(&batch.node_x[batch.target[v] * kExplorerNodeFeatureCount], kExplorerNodeFeatureCount);
+    add(&batch.visit_x[v * kExplorerVisitFeatureCount], kExplorerVisitFeatureCount);
+    ASSERT_EQ(std::ssize(input), kExplorerHeadInputs);
+    const auto layer = [](const LinearTensors<const float>& weights, LinearShape shape, const std::vector<double>& x) {
+      std::vector<double> out(weights.bias, weights.bias + shape.outputs);
+      for (int o = 0; o < shape.outputs; ++o) {
+        for (int i = 0; i < shape.inputs; ++i) out[o] += double{weights.weight[o * shape.inputs + i]} * x[i];
+      }
+      return out;
+    };
+    std::vector<double> hidden = layer(parameters.linear("head1"), kExplorerHead1, input);
+    for (double& value : hidden) value = value > 0 ? value : std::expm1(value);
+    EXPECT_NEAR(score[v], layer(parameters.linear("head2"), kExplorerHead2, hidden)[0], 1e-5) << v;
+  }
+}
+
 TEST(ExplorerNetwork, HasTheGradientOfItsOutput) {
   const Sample sample;
   Rng rng(4);

@@ -100,6 +100,12 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
     const Optimum all = follow(complete->walk);
     ASSERT_EQ(all.visited, optimum.visited);
     ASSERT_NEAR(all.cost, optimum.cost, 1e-9);
+    ExplorerGuide guide(builtin_explorer());
+    const auto guided = beam_plan(start, {.width = 1000}, {}, &guide);
+    ASSERT_TRUE(guided->optimal);
+    ASSERT_EQ(follow(guided->walk).visited, optimum.visited);
+    const auto narrow = beam_plan(start, {.width = 1}, {}, &guide);
+    ASSERT_TRUE(!narrow->optimal || follow(narrow->walk).visited == optimum.visited);
     for (const char* const name :
          {"random", "random-walk", "dfs", "nearest", "beam:2", "explorer", "guided:2", "exact"}) {
       const auto policy = make_policy(name, 1);
@@ -109,6 +115,24 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
     }
   }
   EXPECT_GT(tight, kCases * 9 / 10) << "the bound is loose";
+}
+
+TEST(Guided, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
+  std::vector<Edge> rays;
+  for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf});
+  const World star("star", Graph::from_edges(201, rays), std::vector<bool>(201));
+  const SearchStart start = search_start(star, 0, 1);
+  ExplorerGuide guide(builtin_explorer());
+  EXPECT_FALSE(beam_plan(start, {.width = 1000}, {}, &guide)->optimal);
+  EXPECT_TRUE(beam_plan(start, {.width = 1000})->optimal);
+}
+
+TEST(Guided, RefusesWeightsThatGiveNoNumbers) {
+  Rng rng(1);
+  auto parameters = std::make_shared<ExplorerParameters>(rng);
+  for (float& value : parameters->values()) value *= 1e38f;
+  const World world = grid_world("...\n...\n");
+  EXPECT_THROW(ExplorerPolicy(parameters).plan(search_start(world, 0, 9)), Error);
 }
 
 TEST(Optimality, PlansGoOnFromWhereSomeoneElseLed) {

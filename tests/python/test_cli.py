@@ -183,6 +183,8 @@ def bad_inputs(tmp_path, policy):
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:0"], "bad beam width"),
         (["plan", "paper:a", "--budget", "9", "--policy", f"guided:4:{policy}"], "policy of another network"),
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:4:nothing"], "cannot read the file"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "guided:4:"], "no policy file is named"),
+        (["inspect", policy, "--map", "paper:a", "--walk", "0,1", "--budget", "9"], "the paper's network looks at no budget"),
         (["plan", "paper:a", "--budget", "-1"], "bad budget"),
         (["maps", "generate", "maze", "--size", "8", "--out", tmp_path / "new"], "an odd number of cells a side"),
         (["maps", "generate", "cave", "--size", "8", "--out", tmp_path / "new"], "no such family of worlds"),
@@ -369,7 +371,7 @@ def test_generated_worlds_are_read_back_and_the_same_again(run, tmp_path):
 
 
 def test_an_explorer_is_trained_used_and_looked_into(run, tmp_path):
-    small = ["--largest", "5", "--walks", "20", "--updates", "5", "--states", "8", "--teacher-width", "4"]
+    small = ["--largest", "5", "--walks", "20", "--updates", "5", "--batch-size", "8", "--teacher-width", "4"]
     process = run("graphdrl", "train", "--rounds", "2", *small, "--out", tmp_path / "run", "--json")
     assert process.returncode == 0, process.stderr
     result = json.loads(process.stdout)
@@ -382,7 +384,9 @@ def test_an_explorer_is_trained_used_and_looked_into(run, tmp_path):
     for name in (policy, f"guided:3:{policy}"):
         assert plan(run, "paper:a", "--budget", "25", "--policy", name)["visited"] >= 10
     shown = json.loads(run("graphdrl", "inspect", policy, "--map", "paper:a", "--walk", "0,1", "--budget", "25", "--json").stdout)
-    assert [visit["node"] for visit in shown["steps"][0]["first_visits"]] == [1, 5]
+    first = shown["steps"][0]
+    assert [visit["node"] for visit in first["first_visits"]] == [1, 5] and first["ceiling"] == 18
+    assert len(first["nodes"]) == 19 and first["nodes"][0]["current"] == 1 and first["first_visits"][1]["features"]["cost"] == 0.125
     assert "head2.weight" in run("graphdrl", "inspect", "explorer").stdout
 
 

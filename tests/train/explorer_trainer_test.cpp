@@ -19,10 +19,10 @@ ExplorerOptions quick_options() {
   options.largest = 5;
   options.walks = 24;
   options.updates = 6;
-  options.states = 8;
-  options.memory = 50;  // less than four rounds draw
+  options.batch_size = 8;
+  options.replay_capacity = 50;  // less than four rounds draw
   options.teacher_width = 4;
-  options.save_every = 1;
+  options.checkpoint_every = 1;
   return options;
 }
 
@@ -66,17 +66,30 @@ TEST(ExplorerTrainer, RefusesDamagedCheckpoints) {
   run(*ExplorerTrainer::start(quick_options(), run_directory), 1);
   const std::string whole = read_file(run_directory.checkpoint());
   Rng rng(1);
+  const auto resume = [&](const std::string& content) {
+    write_file(run_directory.checkpoint(), content);
+    ExplorerTrainer::resume(run_directory);
+  };
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_THROW(resume(whole.substr(0, rng.below(static_cast<std::uint32_t>(whole.size())))), Error);
+  }
   for (int i = 0; i < 60; ++i) {
     std::string damaged = whole;
-    if (i % 3 == 0) {
-      damaged.resize(rng.below(static_cast<std::uint32_t>(damaged.size())));
-    } else {
-      damaged[rng.below(static_cast<std::uint32_t>(damaged.size()))] ^= static_cast<char>(1 + rng.below(255));
-    }
-    write_file(run_directory.checkpoint(), damaged);
+    damaged[rng.below(static_cast<std::uint32_t>(damaged.size()))] ^= static_cast<char>(1 + rng.below(255));
     try {
-      ExplorerTrainer::resume(run_directory);  // a changed weight is a weight like any other
+      resume(damaged);  // a changed weight is a weight like any other
     } catch (const Error&) {
+    }
+  }
+  // One value of each kind that a lesson holds, set to what no lesson can have.
+  const Safetensors file = Safetensors::parse(whole, "whole");
+  const std::size_t data = whole.size() - file.entries().back().end;
+  for (const std::string name : {"memory.position", "memory.scope", "memory.label_count", "memory.choice"}) {
+    for (const Safetensors::Entry& entry : file.entries()) {
+      if (entry.name != name) continue;
+      std::string damaged = whole;
+      for (int byte = 0; byte < 8; ++byte) damaged[data + entry.begin + byte] = '\x7f';
+      EXPECT_THROW(resume(damaged), Error) << name;
     }
   }
 }
@@ -84,7 +97,8 @@ TEST(ExplorerTrainer, RefusesDamagedCheckpoints) {
 TEST(Lessons, OfSmallWorldsAreWorthWhatExactSearchSays) {
   // A beam this wide drops nothing here.
   const LessonOptions options{.worlds = {{"obstacles", 4}, {"tree", 10, true}, {"erdos-renyi", 9, false, true}},
-                              .teacher_width = 5000};
+                              .teacher_width = 5000,
+                              .lead = 0.5};
   Rng rng(1);
   const ExplorerParameters parameters(rng);
   int checked = 0;
@@ -141,6 +155,19 @@ TEST(ExplorerLoss, HasTheGradientItSays) {
     EXPECT_NEAR(grad[i], slope, 1e-3) << i;
   }
   EXPECT_EQ(grad[2], 0);
+}
+
+TEST(ExplorerLoss, RanksByCrossEntropy) {
+  const Graph graph = Graph::grid(1, 3);
+  const ExplorerBatch batch = two_states(graph);
+  std::vector<float> grad(5);
+  const std::vector<float> label = {0, 0.5, kUnlabelled, kUnlabelled, kUnlabelled};
+  const std::vector<float> shortfall = {0.5, 0, 0, 0, 0};
+  // Odds of 1 and 1/e at a temperature of half a node, the wrong way round; a mean over two states.
+  const double best = 1 / (1 + std::exp(-1));
+  const double expected = -(best * std::log(1 - best) + (1 - best) * std::log(best)) / 2;
+  const double without = explorer_loss(batch, label, shortfall, 0, grad);
+  EXPECT_NEAR(explorer_loss(batch, label, shortfall, 1, grad) - without, expected, 1e-6);
 }
 
 TEST(ExplorerLoss, IsWorkedOutByHand) {

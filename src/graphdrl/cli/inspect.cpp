@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/budget.h"
@@ -19,6 +20,7 @@ struct InspectOptions {
   std::string map;
   std::vector<NodeId> walk;
   std::string budget = "1.1x";
+  bool budget_given = false;
   bool json = false;
 };
 
@@ -63,12 +65,11 @@ Json to_json(const std::vector<InspectedStep>& steps) {
 struct ExplorerStep {
   NodeId position;
   std::vector<FirstVisit> visits;
-  std::vector<float> features;   // [C, 10]
+  ExplorerBatch seen;            // this state alone
   std::vector<float> shortfall;  // [C]
 };
 
-std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const InspectOptions& options) {
-  const World world = load_one_world(options.map);
+std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const World& world, const InspectOptions& options) {
   const double budget = Budget::parse(options.budget).cost_in(world);
   Episode episode(world, {.budget = budget, .action_space = action_space_of(world)});
   std::vector<ExplorerStep> steps;
@@ -77,15 +78,12 @@ std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const InspectOption
     for (NodeId node = 0; node < world.graph().node_count(); ++node) {
       if (observation.visited(node)) visited[node / 64] |= std::uint64_t{1} << (node % 64);
     }
-    ExplorerBatch batch;
+    ExplorerStep step{.position = observation.position, .visits = {}, .seen = {}, .shortfall = {}};
     const auto visits = guide.encoder_for(world).append(
         {.visited = visited.data(), .position = observation.position, .spendable = observation.spendable},
-        kExplorerScope, batch);
-    ExplorerStep step{.position = observation.position,
-                      .visits = {visits.begin(), visits.end()},
-                      .features = batch.visit_x,
-                      .shortfall = {}};
-    if (!visits.empty()) guide.score(batch, step.shortfall);
+        kExplorerScope, step.seen);
+    step.visits.assign(visits.begin(), visits.end());
+    if (!visits.empty()) guide.score(step.seen, step.shortfall);
     steps.push_back(std::move(step));
   });
   return steps;
@@ -94,15 +92,25 @@ std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const InspectOption
 Json to_json(const std::vector<ExplorerStep>& steps) {
   Json json = Json::array();
   for (const ExplorerStep& step : steps) {
+    const auto named = [](const float* row, const auto& names) {
+      Json values;
+      for (std::size_t f = 0; f < names.size(); ++f) values[std::string(names[f])] = row[f];
+      return values;
+    };
+    Json nodes = Json::array();
+    for (std::size_t row = 0; row < step.seen.node_x.size(); row += kExplorerNodeFeatureCount) {
+      nodes.push_back(named(&step.seen.node_x[row], kExplorerNodeFeatures));
+    }
     Json visits = Json::array();
     for (std::size_t i = 0; i < step.visits.size(); ++i) {
-      const float* const row = step.features.data() + i * kExplorerVisitFeatureCount;
-      visits.push_back({{"node", step.visits[i].node},
-                        {"cost", step.visits[i].cost},
-                        {"shortfall", step.shortfall[i]},
-                        {"features", std::vector(row, row + kExplorerVisitFeatureCount)}});
+      visits.push_back(
+          {{"node", step.visits[i].node},
+           {"cost", step.visits[i].cost},
+           {"shortfall", step.shortfall[i]},
+           {"features", named(&step.seen.visit_x[i * kExplorerVisitFeatureCount], kExplorerVisitFeatures)}});
     }
-    json.push_back({{"position", step.position}, {"first_visits", visits}});
+    json.push_back(
+        {{"position", step.position}, {"ceiling", step.seen.ceiling[0]}, {"first_visits", visits}, {"nodes", nodes}});
   }
   return json;
 }
@@ -111,8 +119,10 @@ std::string format_steps(const std::vector<ExplorerStep>& steps) {
   std::string text;
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const ExplorerStep& step = steps[i];
-    text += fmt::format("\nstep {}, at node {}{}\n", i, step.position,
-                        step.visits.empty() ? ": nothing left in reach" : "");
+    text +=
+        fmt::format("\nstep {}, at node {}: {}\n", i, step.position,
+                    step.visits.empty() ? "nothing left in reach"
+                                        : fmt::format("at most {:g} more, less the shortfall", step.seen.ceiling[0]));
     if (step.visits.empty()) continue;
     const auto best = std::min_element(step.shortfall.begin(), step.shortfall.end()) - step.shortfall.begin();
     text += "  first visit  shortfall";
@@ -120,10 +130,9 @@ std::string format_steps(const std::vector<ExplorerStep>& steps) {
     text += '\n';
     for (std::size_t v = 0; v < step.visits.size(); ++v) {
       text += fmt::format("  {:>10}{}  {:9.3f}", step.visits[v].node,
-                          std::ssize(step.visits) > 0 && best == static_cast<std::ptrdiff_t>(v) ? "*" : " ",
-                          step.shortfall[v]);
+                          best == static_cast<std::ptrdiff_t>(v) ? "*" : " ", step.shortfall[v]);
       for (int f = 0; f < kExplorerVisitFeatureCount; ++f) {
-        text += fmt::format("  {:>{}.3g}", step.features[v * kExplorerVisitFeatureCount + f],
+        text += fmt::format("  {:>{}.3g}", step.seen.visit_x[v * kExplorerVisitFeatureCount + f],
                             kExplorerVisitFeatures[f].size());
       }
       text += '\n';
@@ -182,10 +191,20 @@ void print(const std::vector<TensorSpec>& specs, const Steps& steps, const Inspe
 
 void inspect(const InspectOptions& options) {
   if (options.policy == "explorer" || is_explorer_file(options.policy)) {
-    ExplorerGuide guide(options.policy == "explorer" ? builtin_explorer() : read_explorer_file(options.policy));
-    print(ExplorerParameters::specs(),
-          options.walk.empty() ? std::vector<ExplorerStep>() : inspect_walk(guide, options), options);
+    const SharedExplorer explorer =
+        options.policy == "explorer" ? builtin_explorer() : read_explorer_file(options.policy);
+    std::vector<ExplorerStep> steps;
+    if (!options.walk.empty()) {
+      const World world = load_one_world(options.map);
+      ExplorerGuide guide(explorer);
+      steps = inspect_walk(guide, world, options);
+      for (ExplorerStep& step : steps) step.seen.graphs.clear();  // they end with the guide
+    }
+    print(ExplorerParameters::specs(), steps, options);
     return;
+  }
+  if (options.budget_given) {
+    throw Error({.what = "the paper's network looks at no budget", .where = "--budget"});
   }
   NetworkPolicy policy(read_policy_file(options.policy));
   print(PaperParameters::specs(), options.walk.empty() ? std::vector<InspectedStep>() : inspect_walk(policy, options),
@@ -208,15 +227,18 @@ void add_inspect_command(CLI::App& app) {
       ->type_name("IDS")
       ->needs(map);
   map->needs(command->get_option("--walk"));
-  command
-      ->add_option("--budget", options->budget,
-                   "What the walk may cost in all: an explorer looks at what is left of it")
-      ->type_name("B")
-      ->capture_default_str()
-      ->needs(map);
+  CLI::Option* const budget = command
+                                  ->add_option("--budget", options->budget,
+                                               "What the walk may cost in all: an explorer looks at what is left of it")
+                                  ->type_name("B")
+                                  ->capture_default_str()
+                                  ->needs(map);
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
-  command->callback([options] { inspect(*options); });
+  command->callback([options, budget] {
+    options->budget_given = budget->count() > 0;
+    inspect(*options);
+  });
 }
 
 }  // namespace graphdrl

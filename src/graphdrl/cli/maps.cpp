@@ -162,9 +162,7 @@ void add_maps_command(CLI::App& app) {
                                 ->check(CLI::NonNegativeNumber)
                                 ->capture_default_str();
   generate
-      ->add_option(
-          "--split", making->split,
-          "Instead: the first worlds of a frozen split, train, validation or test; the explorer saw none of test")
+      ->add_option("--split", making->split, "Instead: the first worlds of a frozen split, train, validation or test")
       ->check(CLI::IsMember(kSplits))
       ->excludes(seed);
   generate->add_option("--out", making->out, "The folder, new or empty (default: named after the family)")

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <functional>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -64,8 +65,6 @@ class ConfigReader : public CLI::ConfigTOML {
 struct TrainCommand {
   ExplorerOptions explorer;
   TrainOptions paper;
-  std::string preset = ExplorerOptions{}.preset;
-  std::uint64_t seed = 1;
   std::string out;
   std::string resume;
   bool json = false;
@@ -127,43 +126,67 @@ void train(TrainCommand& command) {
     if (preset_of(run.config()) == command.paper.preset) return train(*Trainer::resume(run), command);
     return train(*ExplorerTrainer::resume(run), command);
   }
-  const RunDirectory run(command.out.empty() ? "runs/" + command.preset : command.out);
-  if (command.preset == command.paper.preset) {
-    command.paper.seed = command.seed;
-    return train(*Trainer::start(command.paper, run), command);
-  }
-  check_choice("--preset", command.preset, {command.explorer.preset, command.paper.preset});
-  command.explorer.seed = command.seed;
+  const std::string& preset = command.explorer.preset;
+  const RunDirectory run(command.out.empty() ? "runs/" + preset : command.out);
+  if (preset == command.paper.preset) return train(*Trainer::start(command.paper, run), command);
   train(*ExplorerTrainer::start(command.explorer, run), command);
 }
 
-// The options of a preset that the others do not have.
-template <typename Table, typename Options>
-std::vector<CLI::Option*> add_preset_options(CLI::App& app, const Table& for_each, Options& options) {
-  std::vector<CLI::Option*> added;
-  for_each(options, [&](const char* key, auto& value, const char* help) {
+// The flags of two presets: those of one alone, and those of both, which set the explorer's value first.
+struct PresetFlags {
+  std::vector<CLI::Option*> of_explorer;
+  std::vector<CLI::Option*> of_paper;
+  std::vector<std::function<void()>> copy_to_paper;  // of those of both, where given
+};
+
+PresetFlags add_preset_flags(CLI::App& app, TrainCommand& command) {
+  PresetFlags flags;
+  std::map<std::string, CLI::Option*> added;
+  for_each_explorer_field(command.explorer, [&](const char* key, auto& value, const char* help) {
     const std::string flag = "--" + kebab_case(key);
-    if (flag == "--preset" || flag == "--seed") return;
     add_field(app, flag, value, help);
-    added.push_back(app.get_option(flag)->group("Of the preset " + options.preset));
+    added[key] = app.get_option(flag);
   });
-  return added;
+  for_each_field(command.paper, [&](const char* key, auto& value, const char* help) {
+    const std::string flag = "--" + kebab_case(key);
+    if (const auto both = added.find(key); both != added.end()) {
+      CLI::Option* const option = both->second;
+      added.erase(both);
+      if (std::string_view(key) == "preset") return;
+      // The default shown is the explorer's.
+      option->description(fmt::format("{} (paper: {})", option->get_description(), Json(value).dump()));
+      flags.copy_to_paper.push_back([option, &value] {
+        if (option->count() > 0) option->results(value);
+      });
+      return;
+    }
+    add_field(app, flag, value, help);
+    flags.of_paper.push_back(app.get_option(flag)->group("Of the preset paper"));
+  });
+  for (const auto& [key, option] : added) flags.of_explorer.push_back(option->group("Of the preset explorer"));
+  return flags;
 }
 
-// An option of the preset paper alone chooses that preset, where none is named. Throws Error on options of another one.
-void choose_preset(TrainCommand& command, bool named, const std::vector<CLI::Option*>& of_explorer,
-                   const std::vector<CLI::Option*>& of_paper) {
+// An option that only the preset paper has chooses that preset, where none is named. Throws Error on options of another
+// one.
+void choose_preset(TrainCommand& command, bool named, const PresetFlags& flags) {
   const auto given = [](const std::vector<CLI::Option*>& options) {
     const auto found =
         std::find_if(options.begin(), options.end(), [](const CLI::Option* option) { return option->count() > 0; });
     return found == options.end() ? nullptr : *found;
   };
-  if (!named && given(of_paper) != nullptr) command.preset = command.paper.preset;
-  const bool paper = command.preset == command.paper.preset;
-  if (const CLI::Option* const other = given(paper ? of_explorer : of_paper)) {
-    throw Error({.what = fmt::format("{} is no option of the preset {}", other->get_name(), command.preset),
-                 .expected = fmt::format("--preset {}", paper ? command.explorer.preset : command.paper.preset)});
+  std::string& preset = command.explorer.preset;
+  const std::string explorer = ExplorerOptions{}.preset;
+  const std::string paper = TrainOptions{}.preset;
+  check_choice("--preset", preset, {explorer, paper});
+  if (!named && given(flags.of_paper) != nullptr) preset = paper;
+  const bool is_paper = preset == paper;
+  if (const CLI::Option* const other = given(is_paper ? flags.of_explorer : flags.of_paper)) {
+    throw Error({.what = fmt::format("{} is no option of the preset {}", other->get_name(), preset),
+                 .expected = "--preset " + (is_paper ? explorer : paper)});
   }
+  if (!is_paper) return;
+  for (const auto& copy : flags.copy_to_paper) copy();
 }
 
 int main_program(int argc, char** argv) {
@@ -171,15 +194,8 @@ int main_program(int argc, char** argv) {
       "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
       "graphdrl train"};
   const auto command = std::make_shared<TrainCommand>();
-  for_each_explorer_field(command->explorer, [&](const char* key, auto&, const char* help) {
-    if (key == std::string_view("preset")) add_field(app, "--preset", command->preset, help);
-    if (key == std::string_view("seed")) add_field(app, "--seed", command->seed, help);
-  });
+  const PresetFlags flags = add_preset_flags(app, *command);
   const CLI::Option* const preset = app.get_option("--preset");
-  const auto of_explorer = add_preset_options(
-      app, [](auto& options, const auto& field) { for_each_explorer_field(options, field); }, command->explorer);
-  const auto of_paper = add_preset_options(
-      app, [](auto& options, const auto& field) { for_each_field(options, field); }, command->paper);
   app.add_option("--out", command->out, "The run directory, new (default: runs/PRESET)")
       ->type_name("RUN")
       ->check(not_empty());
@@ -197,7 +213,7 @@ int main_program(int argc, char** argv) {
   // What `graphdrl bench` runs this program for.
   bool bench = false;
   app.add_flag("--bench-learning-step", bench)->group("");
-  app.callback([command, preset, new_run, of_explorer, of_paper, resume, &bench] {
+  app.callback([command, preset, new_run, flags, resume, &bench] {
     if (bench) {
       const LearningStepTime time = time_learning_step(threads());
       print_json({{"learning_step_ms", time.step_ms}, {"products_ms", time.products_ms}, {"sgemm_ms", time.sgemm_ms}});
@@ -210,7 +226,7 @@ int main_program(int argc, char** argv) {
                      .where = command->resume});
       }
     }
-    choose_preset(*command, preset->count() > 0, of_explorer, of_paper);
+    if (resume->count() == 0) choose_preset(*command, preset->count() > 0, flags);
     train(*command);
   });
   return run_program(app, argc, argv);

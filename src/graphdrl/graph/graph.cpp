@@ -93,6 +93,7 @@ Graph Graph::induced(std::span<const NodeId> nodes, std::vector<NodeId>& number)
     graph.close_node();
   }
   for (const NodeId node : nodes) number[node] = kNoNode;
+  graph.forget_unit_costs();
   return graph;
 }
 

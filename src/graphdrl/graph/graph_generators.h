@@ -1,5 +1,5 @@
-// Random graphs, undirected, every edge of cost 1. The same random numbers give the same graph on every machine, which
-// frozen test sets need. REQUIRES everywhere: nodes >= 1.
+// Random graphs, undirected, every edge of cost 1 unless said. The same random numbers give the same graph, which
+// frozen test sets need; lengths may differ in their last digit between C libraries. REQUIRES everywhere: nodes >= 1.
 #pragma once
 
 #include "graphdrl/base/random.h"

@@ -1,5 +1,6 @@
 // What the explorer's network sees: one row of numbers per valid node and one per possible first visit, none of which
-// depends on a world's size, on coordinates or on how its nodes are numbered. Costs are in mean edges of the world.
+// depends on a world's size, on coordinates or, but for ties at the edge of the scope, on how its nodes are numbered.
+// Costs are in mean edges of the world.
 #pragma once
 
 #include <array>
@@ -15,31 +16,43 @@
 
 namespace graphdrl {
 
-inline constexpr std::array<std::string_view, 20> kExplorerNodeFeatures = {"unvisited",
-                                                                           "current",
-                                                                           "candidate",
-                                                                           "degree",
-                                                                           "unvisited_neighbours",
-                                                                           "isolated",
-                                                                           "dead_end",
-                                                                           "distance",
-                                                                           "visit_cost",
-                                                                           "in_reach",
-                                                                           "distance_to_work",
-                                                                           "part_size",
-                                                                           "part_share",
-                                                                           "edge_cost",
-                                                                           "budget_per_work",
-                                                                           "slack",
-                                                                           "hanging",
-                                                                           "hanging_size",
-                                                                           "hanging_height",
-                                                                           "one_way"};
+// Flags are 0 or 1; costs are cut at 32 and divided by 8; counts are cut at 64 and scaled as ln(1 + count) / 4.
+inline constexpr std::array<std::string_view, 20> kExplorerNodeFeatures = {
+    "unvisited",             // flag
+    "current",               // flag
+    "candidate",             // flag: the target of a possible first visit
+    "degree",                // count, whichever way edges lead
+    "unvisited_neighbours",  // count
+    "isolated",              // flag: unvisited, and so is no neighbour
+    "dead_end",              // flag: unvisited, and so is one neighbour
+    "distance",              // cost from the current node, through any ground
+    "visit_cost",            // cost of the first visit; 0 of other nodes
+    "in_reach",              // flag: can be had for the budget left; 1 of all nodes in the scope
+    "distance_to_work",      // steps to the nearest unvisited node
+    "part_size",             // count: unvisited nodes connected through unvisited ones
+    "part_share",            // of all unvisited nodes in reach
+    "edge_cost",             // mean of the node's edges, in mean edges, cut at 4, less 1
+    "budget_per_work",       // budget left for each unvisited node in reach, in mean edges, cut at 3; the same of all
+    "slack",           // budget left less unvisited nodes in the scope, cut at ±16, divided by 8; the same of all
+    "hanging",         // flag: unvisited, and can be left only by the way one came
+    "hanging_size",    // count: nodes of the hanging tree from here outwards, or of those that hang on the node
+    "hanging_height",  // cost: steps to the farthest of them
+    "one_way",         // share of the node's edges that lead one way only
+};
 inline constexpr int kExplorerNodeFeatureCount = static_cast<int>(kExplorerNodeFeatures.size());
 
 inline constexpr std::array<std::string_view, 10> kExplorerVisitFeatures = {
-    "cost", "new_dead_ends", "unvisited_neighbours", "next_cost",     "budget_per_work", "slack",
-    "work", "hanging",       "hanging_size",         "hanging_height"};
+    "cost",                  // cost
+    "change_of_penalties",   // change_of_penalties() / 4
+    "unvisited_neighbours",  // count, of the target
+    "next_cost",             // cost from the target to the next unvisited node
+    "budget_per_work",       // as of nodes, after the visit
+    "slack",                 // likewise
+    "work",                  // count: unvisited nodes in reach
+    "hanging",               // as of the target
+    "hanging_size",          // likewise
+    "hanging_height",        // likewise
+};
 inline constexpr int kExplorerVisitFeatureCount = static_cast<int>(kExplorerVisitFeatures.size());
 
 // A move: a walk to an unvisited node next to visited ground, by the cheapest way through visited ground.
@@ -70,8 +83,8 @@ struct ExplorerBatch {
   int visit_count() const { return static_cast<int>(target.size()); }  // C
 };
 
-// How many nodes around the current one the network looks at, at least while that many are in reach: those outside look
-// the same from wherever a walk goes next, and a move costs the same in a world of any size.
+// How many nodes around the current one the network looks at: a large world looks like those it was trained on, and its
+// share of a move's cost does not grow with the world.
 inline constexpr int kExplorerScope = 96;
 
 // Builds the features of one world's states. Keeps working memory; not thread safe. The world must outlive it, and it

@@ -26,11 +26,21 @@ nlohmann::json network_description() {
           {"node_features", kExplorerNodeFeatures},
           {"visit_features", kExplorerVisitFeatures},
           {"layers",
-           {{{"type", "gated_graph_conv"}, {"inputs", conv.inputs}, {"width", conv.width}, {"steps", conv.steps}},
-            {{"type", "linear"}, {"inputs", kExplorerHead1.inputs}, {"width", kExplorerHead1.outputs}},
-            {{"type", "linear"}, {"inputs", kExplorerHead2.inputs}, {"width", kExplorerHead2.outputs}}}},
-          {"head_inputs", {"target", "current", "mean", "node_features", "visit_features"}},
-          {"activation", "elu"}};
+           {{{"type", "gated_graph_conv"},
+             {"inputs", conv.inputs},
+             {"width", conv.width},
+             {"steps", conv.steps},
+             {"activation", "none"}},
+            {{"type", "linear"},
+             {"inputs", kExplorerHead1.inputs},
+             {"width", kExplorerHead1.outputs},
+             {"activation", "elu"}},
+            {{"type", "linear"},
+             {"inputs", kExplorerHead2.inputs},
+             {"width", kExplorerHead2.outputs},
+             {"activation", "none"}}}},
+          {"scope", kExplorerScope},
+          {"head_inputs", {"target", "current", "mean", "node_features", "visit_features"}}};
 }
 
 // A row of [count, width].

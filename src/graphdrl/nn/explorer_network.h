@@ -3,7 +3,8 @@
 // is going to cost in the end: how many nodes the best walk after it falls short of the state's ceiling
 // [explorer_features.h].
 //
-// Renumbering a world's nodes renumbers the scores and changes nothing else. No tensor library is needed.
+// Renumbering a world's nodes renumbers the scores and changes nothing else, but for ties at the edge of the scope. No
+// tensor library is needed.
 #pragma once
 
 #include <span>

@@ -25,7 +25,7 @@ void for_blocks(int rows, const Task& task) {
   });
 }
 
-// Sums over rows of `terms` values per column, block by block: term(row, sums) adds a row's to sums [terms · width].
+// Sums of `values` terms over rows, block by block: term(row, sums) adds a row's terms to sums [values].
 template <typename Term>
 std::vector<double> column_sums(int rows, int values, const Term& term) {
   std::vector<float> partial(static_cast<std::size_t>(block_count(rows)) * values);

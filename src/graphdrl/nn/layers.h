@@ -41,7 +41,7 @@ struct BatchNormTensors {
 // What a column is normalised by: (x - mean) · inverse.
 struct ColumnStatistics {
   std::vector<float> mean;      // [width]
-  std::vector<float> variance;  // [width], biased: divided by the number of rows
+  std::vector<float> variance;  // [width]; column_statistics() divides by the number of rows
   std::vector<float> inverse;   // [width], 1 / √(variance + epsilon)
 };
 ColumnStatistics column_statistics(int rows, int width, const float* x, double epsilon);

@@ -52,6 +52,7 @@ class ParameterBuffer {
 
   std::span<float> values() { return values_; }
   std::span<const float> values() const { return values_; }
+  // REQUIRES, of all that take a name: there is such a tensor, or such a layer.
   float* tensor(const std::string& name);
   const float* tensor(const std::string& name) const;
   GatedGraphConvTensors<float> conv(const std::string& name);

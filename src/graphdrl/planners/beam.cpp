@@ -135,7 +135,7 @@ std::optional<Plan> Beam::run(Deadline deadline) {
 
 bool Beam::expand_level(Deadline deadline) {
   const int count = static_cast<int>(level_.size());
-  const int block = guide_ == nullptr ? 64 : std::max(1, kBlockNodes / world_.valid_count());
+  const int block = guide_ == nullptr ? 64 : std::max(1, kBlockNodes / std::min(world_.valid_count(), kExplorerScope));
   for (int first = 0; first < count; first += block) {
     if (passed(deadline)) return false;
     const int end = std::min(first + block, count);
@@ -291,14 +291,15 @@ bool BeamPolicy::improve(const SearchStart& start, int width, Deadline deadline,
     if (gain > 0 || (gain == 0 && (next->optimal || cheaper()))) best = std::move(next);
     return true;
   };
-  if (!take(beam_plan(start, {.width = width}, deadline))) return false;
+  // The very first search is finished whatever it takes, so that there is a walk.
+  if (!take(beam_plan(start, {.width = width}, best ? deadline : Deadline()))) return false;
   return !guide_ || best->optimal || take(beam_plan(start, {.width = width}, deadline, &*guide_));
 }
 
 Plan BeamPolicy::plan(const SearchStart& start) {
   const Deadline deadline = deadline_after(limit_);
   std::optional<Plan> best;
-  improve(start, options_.width, {}, best);
+  improve(start, options_.width, deadline, best);
   const int most = limit_ ? max_visited(start) : 0;
   for (int width = 2 * options_.width; limit_; width *= 2) {
     best->optimal = best->optimal || visited_after(start, best->walk) >= most;

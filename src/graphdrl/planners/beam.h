@@ -23,7 +23,8 @@ std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& optio
                               ExplorerGuide* guide = nullptr);
 
 // With a time limit, searches again and again with twice the width, until the time is up, a walk is known to be optimal
-// or memory would run short; the best walk counts. The first search, of the width given, is always finished.
+// or memory would run short; the best walk counts. The first search without a guide, of the width given, is always
+// finished.
 class BeamPolicy final : public PlanPolicy {
  public:
   explicit BeamPolicy(BeamOptions options, TimeLimit limit = {}) : options_(options), limit_(limit) {}

@@ -1,7 +1,9 @@
 #include "graphdrl/planners/explorer_policy.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "graphdrl/base/error.h"
 #include "graphdrl/planners/beam.h"
 
 namespace graphdrl {
@@ -19,6 +21,14 @@ bool is_explorer_file(const std::string& path) {
 
 SharedExplorer read_explorer_file(const std::string& path) {
   return std::make_shared<const ExplorerParameters>(read_explorer(Safetensors::read(path)));
+}
+
+void ExplorerGuide::score(const ExplorerBatch& batch, std::vector<float>& shortfall) {
+  shortfall.resize(static_cast<std::size_t>(batch.visit_count()));
+  network_.forward(batch, shortfall);
+  for (const float value : shortfall) {
+    if (!std::isfinite(value)) throw Error({.what = "the explorer's weights are too large to compute with"});
+  }
 }
 
 Plan ExplorerPolicy::plan(const SearchStart& start) {

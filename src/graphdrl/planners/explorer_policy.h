@@ -33,11 +33,9 @@ class ExplorerGuide {
 
   ExplorerEncoder& encoder_for(const World& world) { return encoders_.try_emplace(&world, world).first->second; }
 
-  // How many nodes the best walk after each first visit falls short of its state's ceiling.
-  void score(const ExplorerBatch& batch, std::vector<float>& shortfall) {
-    shortfall.resize(static_cast<std::size_t>(batch.visit_count()));
-    network_.forward(batch, shortfall);
-  }
+  // How many nodes the best walk after each first visit falls short of its state's ceiling. shortfall: [C], resized.
+  // Throws Error where the network's weights are so large that it gives no number.
+  void score(const ExplorerBatch& batch, std::vector<float>& shortfall);
 
  private:
   SharedExplorer parameters_;
@@ -45,7 +43,7 @@ class ExplorerGuide {
   std::map<const World*, ExplorerEncoder> encoders_;
 };
 
-// The explorer alone: at every first visit, the one that the network says leads to most; the nearest among equals.
+// The explorer alone: at every first visit, the one that the network says leads to most; the lowest id among equals.
 class ExplorerPolicy final : public PlanPolicy {
  public:
   explicit ExplorerPolicy(SharedExplorer parameters) : guide_(std::move(parameters)) {}

@@ -53,6 +53,9 @@ std::optional<BeamName> parse_beam_name(std::string_view name) {
   if (const std::size_t next = text.find(':'); result.guided && next != std::string_view::npos) {
     result.file = text.substr(next + 1);
     text = text.substr(0, next);
+    if (result.file.empty()) {
+      throw Error({.what = "no policy file is named", .expected = "guided:W:FILE", .got = in_quotes(name, 200)});
+    }
   }
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.width);
   const bool good = error == std::errc() && end == text.data() + text.size();

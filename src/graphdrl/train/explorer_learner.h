@@ -13,7 +13,7 @@ namespace graphdrl {
 inline constexpr double kRankingTemperature = 0.5;  // nodes
 
 // The loss over states, and its derivative by `shortfall`. label, shortfall, grad: [C]; kUnlabelled ones count for
-// nothing. A state's loss is the sum of three means over its first visits:
+// nothing. The loss is a mean over all states of the sum of three, the first two of which are means over first visits:
 // - Huber's loss [1964, linear past 2 nodes] of shortfall - label, weighed less where even the best falls far short;
 // - the same of the deviations from their means: which first visit is better by how much;
 // - `ranking` times the cross-entropy of softmax(-shortfall / 0.5) from softmax(-label / 0.5): which one is best.
@@ -21,8 +21,8 @@ double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, s
                      double ranking, std::span<float> grad);
 
 struct ExplorerLearnerOptions {
-  bool bootstrap = false;  // Double DQN: values from the network's own, instead of the lessons'
-  double ranking = 1;
+  bool bootstrap;  // Double DQN: values from the network's own, instead of the lessons'
+  double ranking;
   double soft_update = 5e-3;  // of the target network, with bootstrap
 };
 
@@ -31,11 +31,11 @@ class ExplorerLearner {
   ExplorerLearner(const ExplorerLearnerOptions& options, Rng& rng);
   ExplorerLearner(const ExplorerLearner&) = delete;
 
-  // One step at this learning rate; gives the loss before it.
+  // One step of Adam at this learning rate, gradients cut to ±1 one by one; gives the loss before it.
   double learn(std::span<const Lesson* const> lessons, double rate);
 
-  // Of the last step: nodes lost where the choice of the network in training mode is not the best labelled one; a mean
-  // over states.
+  // Of the last step: how many nodes the network's choice, among labelled first visits, is worse than the best of them;
+  // a mean over states.
   double regret() const { return regret_; }
 
   ExplorerParameters& online() { return online_; }

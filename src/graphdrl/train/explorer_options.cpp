@@ -17,10 +17,10 @@ void validate(const ExplorerOptions& options) {
   check_range("--lead", options.lead, 0.0, 1.0);
   check_range<std::int64_t>("--walks", options.walks, 1, 1'000'000);
   check_range<std::int64_t>("--updates", options.updates, 1, 1'000'000);
-  check_range<std::int64_t>("--states", options.states, 1, 65'536);
-  check_range<std::int64_t>("--memory", options.memory, options.states, 100'000'000);
-  check_range("--rate", options.rate, 0.0, 1e3);
-  check_range<std::int64_t>("--save-every", options.save_every, 1, kMany);
+  check_range<std::int64_t>("--batch-size", options.batch_size, 1, 65'536);
+  check_range<std::int64_t>("--replay-capacity", options.replay_capacity, options.batch_size, 100'000'000);
+  check_range("--learning-rate", options.learning_rate, 0.0, 1e3);
+  check_range<std::int64_t>("--checkpoint-every", options.checkpoint_every, 1, kMany);
 }
 
 std::vector<WorldSpec> training_worlds(const ExplorerOptions& options) {

@@ -22,10 +22,10 @@ struct ExplorerOptions {
   double lead = 0.6;
   std::int64_t walks = 512;
   std::int64_t updates = 400;
-  std::int64_t states = 64;
-  std::int64_t memory = 200'000;
-  double rate = 2e-3;
-  std::int64_t save_every = 20;
+  std::int64_t batch_size = 64;
+  std::int64_t replay_capacity = 200'000;
+  double learning_rate = 2e-3;
+  std::int64_t checkpoint_every = 20;
 };
 
 template <typename Options, typename Field>
@@ -33,7 +33,7 @@ void for_each_explorer_field(Options& options, Field&& field) {
   field("preset", options.preset,
         "What to train: explorer, on random worlds of every kind, or paper (also chosen by its own options)");
   field("seed", options.seed,
-        "The same seed gives the same policy file, byte for byte (same build and machine, --device cpu)");
+        "The same seed gives the same policy file, byte for byte (same build and machine; on the CPU)");
   field("rounds", options.rounds, "Rounds of walks and updates; the learning rate falls over all of them");
   field("largest", options.largest, "Largest side of training grids; graphs have up to seven times as many nodes");
   field("teacher", options.teacher,
@@ -43,10 +43,10 @@ void for_each_explorer_field(Options& options, Field&& field) {
   field("lead", options.lead, "Share of walks that the network leads");
   field("walks", options.walks, "Random walks per round");
   field("updates", options.updates, "Learning steps per round");
-  field("states", options.states, "States per learning step");
-  field("memory", options.memory, "States remembered");
-  field("rate", options.rate, "Adam's learning rate at the start");
-  field("save_every", options.save_every, "Rounds between checkpoints");
+  field("batch_size", options.batch_size, "States or transitions per learning step");
+  field("replay_capacity", options.replay_capacity, "States or transitions remembered");
+  field("learning_rate", options.learning_rate, "Adam's; that of the explorer falls to a fiftieth");
+  field("checkpoint_every", options.checkpoint_every, "Rounds or episodes between checkpoints");
 }
 
 // Throws Error, naming the option, on a value out of range.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -79,8 +80,9 @@ bool ExplorerTrainer::run(const std::function<bool()>& stop, ProgressDisplay& di
         {"states", static_cast<double>(progress_.states)}, {"loss", round_loss_}, {"regret", round_regret_}};
     metrics.write(progress_.round, scalars);
     events.write(progress_.round, scalars);
-    if (last || stopped || progress_.round % options_.save_every == 0) save();
+    if (!last && !stopped && progress_.round % options_.checkpoint_every == 0) save();
   }
+  save();
   display.finish();
   return progress_.round == options_.rounds;
 }
@@ -94,7 +96,7 @@ void ExplorerTrainer::draw_lessons_of_round() {
   });
   for (std::vector<Lesson>& lessons : drawn) {
     for (Lesson& lesson : lessons) {
-      const auto capacity = static_cast<std::size_t>(options_.memory);
+      const auto capacity = static_cast<std::size_t>(options_.replay_capacity);
       if (memory_.size() < capacity) {
         memory_.push_back(std::move(lesson));
       } else {
@@ -107,16 +109,16 @@ void ExplorerTrainer::draw_lessons_of_round() {
 
 void ExplorerTrainer::learn_round() {
   round_loss_ = round_regret_ = 0;
-  std::vector<const Lesson*> picked(static_cast<std::size_t>(options_.states));
+  std::vector<const Lesson*> picked(static_cast<std::size_t>(options_.batch_size));
   const auto updates = static_cast<double>(options_.updates);
   for (std::int64_t update = 0; update < options_.updates && !memory_.empty(); ++update) {
     for (const Lesson*& lesson : picked) lesson = &memory_[rng_.below(static_cast<std::uint32_t>(memory_.size()))];
     const double done = (static_cast<double>(progress_.round) + static_cast<double>(update) / updates) /
                         static_cast<double>(options_.rounds);
-    const double loss = learner_.learn(picked, options_.rate * rate_share(done));
+    const double loss = learner_.learn(picked, options_.learning_rate * rate_share(done));
     if (!std::isfinite(loss)) {
       throw std::runtime_error(
-          fmt::format("the loss is not finite in round {}: try a smaller --rate", progress_.round));
+          fmt::format("the loss is not finite in round {}: try a smaller --learning-rate", progress_.round));
     }
     round_loss_ += loss / updates;
     round_regret_ += learner_.regret() / updates;
@@ -195,6 +197,10 @@ void ExplorerTrainer::restore(const Safetensors& file) {
   adam.first() = file.get<float>("adam.first", moments);
   adam.second() = file.get<float>("adam.second", moments);
   adam.steps() = file.get<std::int64_t>("adam.steps", {1})[0];
+  const auto finite = [](const std::vector<float>& values) {
+    return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+  };
+  if (!finite(adam.first()) || !finite(adam.second()) || adam.steps() < 0) fail("the optimiser's state is damaged");
   const auto random = file.get<std::uint64_t>("random.state", {4});
   Rng::State state{};
   std::copy(random.begin(), random.end(), state.begin());
@@ -211,7 +217,8 @@ void ExplorerTrainer::restore(const Safetensors& file) {
   const auto visited = file.get<std::uint64_t>("memory.visited", file.shape_of("memory.visited"));
   const auto labels = file.get<float>("memory.label", file.shape_of("memory.label"));
   const auto damaged = [&] { fail("the lessons remembered in the checkpoint are damaged"); };
-  if (std::ssize(seeds) != std::min(progress_.states, options_.memory)) damaged();
+  const bool good_labels = std::none_of(labels.begin(), labels.end(), [](float value) { return std::isinf(value); });
+  if (std::ssize(seeds) != std::min(progress_.states, options_.replay_capacity) || !good_labels) damaged();
   // Lessons of one walk share their world.
   std::map<std::uint64_t, std::shared_ptr<LessonWorld>> worlds;
   std::size_t visited_at = 0;
@@ -244,6 +251,7 @@ void ExplorerTrainer::restore(const Safetensors& file) {
     const bool labelled = lesson_options_.teacher_width > 0;
     if (label_counts[i] != (labelled ? visits : 0) || choices[i] < 0 || choices[i] >= visits) damaged();
   }
+  if (visited_at != visited.size() || label_at != labels.size()) damaged();
 }
 
 }  // namespace graphdrl
