@@ -14,7 +14,7 @@ namespace graphdrl {
 struct ExplorerOptions {
   std::string preset = "explorer";
   std::uint64_t seed = 1;
-  std::int64_t rounds = 400;
+  std::int64_t rounds = 330;
   std::int64_t largest = 11;
   std::string teacher = "search";
   std::int64_t teacher_width = 24;
