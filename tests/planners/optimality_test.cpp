@@ -117,14 +117,15 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
   EXPECT_GT(tight, kCases * 9 / 10) << "the bound is loose";
 }
 
-TEST(Guided, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
+TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
   std::vector<Edge> rays;
   for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf});
   const World star("star", Graph::from_edges(201, rays), std::vector<bool>(201));
   const SearchStart start = search_start(star, 0, 1);
   ExplorerGuide guide(builtin_explorer());
   EXPECT_FALSE(beam_plan(start, {.width = 1000}, {}, &guide)->optimal);
-  EXPECT_TRUE(beam_plan(start, {.width = 1000})->optimal);
+  EXPECT_FALSE(beam_plan(start, {.width = 1000, .branching = 199})->optimal);
+  EXPECT_TRUE(beam_plan(start, {.width = 1000, .branching = 200})->optimal);
 }
 
 TEST(Guided, RefusesWeightsThatGiveNoNumbers) {

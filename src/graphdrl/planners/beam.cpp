@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <unordered_map>
 
 #include "graphdrl/base/error.h"
@@ -14,9 +15,11 @@ namespace graphdrl {
 namespace {
 
 constexpr std::uint64_t kHashSeed = 1;
-// Full penalties serve mazes best, a quarter of them graphs without dead ends and edges with costs: half of a beam is
-// kept by each.
-constexpr double kLightShare = 0.25;
+// A third of a level is kept by each of three measures, for none is right everywhere. Without a guide they differ in
+// the share of the penalties: all of them serve mazes best, a quarter graphs without dead ends, none budgets that will
+// not do for everything, where what is left over costs nothing. A guide knows of budgets and stands for the last.
+constexpr std::size_t kRankCount = 3;
+constexpr std::array<double, kRankCount> kPenaltyShare = {1, 0.25, 0};
 constexpr int kBlockNodes = 8192;  // of states scored at once
 
 // A partial walk. Its visited nodes are a row of words in the level's memory.
@@ -34,8 +37,7 @@ struct Candidate {
   NodeId node;
   double spent;
   double penalties;
-  double rank;         // lower is better
-  double second_rank;  // by another measure
+  std::array<double, kRankCount> rank;  // lower is better
   std::uint64_t hash;
 };
 
@@ -52,6 +54,7 @@ class Beam {
         into_(open_.reversed()),
         start_(start),
         width_(options.width),
+        branching_(options.branching),
         guide_(guide),
         words_((static_cast<std::size_t>(open_.node_count()) + 63) / 64),
         unit_(open_.mean_cost()),
@@ -83,6 +86,7 @@ class Beam {
   Graph into_;  // open_ turned round
   const SearchStart& start_;
   int width_;
+  int branching_;
   ExplorerGuide* guide_;  // null where partial walks are ranked by penalties
   bool dropped_ = false;
   std::size_t words_;
@@ -152,17 +156,24 @@ void Beam::expand(int parent) {
   using Next = NearestFirst::Next;
   const Partial& from = level_[parent];
   const std::uint64_t* const visited = visited_of(parent);
+  int branches = 0;
   nearest_.run(from.position, start_.limit() - from.spent, [&](NodeId node, double cost) {
     if (has(visited, node)) return Next::kThrough;
+    if (branches == branching_) {
+      dropped_ = true;
+      return Next::kEnd;
+    }
+    ++branches;
     const double spent = from.spent + cost;
     const double penalties = from.penalties + change_of_penalties(open_, into_, visited, node);
-    add({.parent = parent,
-         .node = node,
-         .spent = spent,
-         .penalties = penalties,
-         .rank = spent + unit_ * penalties,
-         .second_rank = spent + kLightShare * unit_ * penalties,
-         .hash = from.hash ^ visit_hash_[node]});
+    Candidate candidate{.parent = parent,
+                        .node = node,
+                        .spent = spent,
+                        .penalties = penalties,
+                        .rank = {},
+                        .hash = from.hash ^ visit_hash_[node]};
+    for (std::size_t i = 0; i < kRankCount; ++i) candidate.rank[i] = spent + kPenaltyShare[i] * unit_ * penalties;
+    add(candidate);
     return Next::kPast;
   });
 }
@@ -190,12 +201,13 @@ void Beam::expand_guided(int first, int count) {
     const double spent = level_[parent].spent + costs_[i];
     const double penalties =
         level_[parent].penalties + change_of_penalties(open_, into_, visited_of(parent), targets_[i]);
+    const double shortfall = double{shortfall_[i]} - batch_.ceiling[batch_.state[i]];
     add({.parent = parent,
          .node = targets_[i],
          .spent = spent,
          .penalties = penalties,
-         .rank = double{shortfall_[i]} - batch_.ceiling[batch_.state[i]],
-         .second_rank = spent + unit_ * penalties,
+         .rank = {shortfall, spent + kPenaltyShare[0] * unit_ * penalties,
+                  spent + kPenaltyShare[1] * unit_ * penalties},
          .hash = level_[parent].hash ^ visit_hash_[targets_[i]]});
   }
 }
@@ -212,23 +224,25 @@ void Beam::add(const Candidate& candidate) {
 }
 
 void Beam::keep_best() {
-  const auto by = [](double Candidate::*rank) {
+  const auto by = [](std::size_t rank) {
     return [rank](const Candidate& a, const Candidate& b) {
-      if (a.*rank != b.*rank) return a.*rank < b.*rank;
+      if (a.rank[rank] != b.rank[rank]) return a.rank[rank] < b.rank[rank];
       return a.parent != b.parent ? a.parent < b.parent : a.node < b.node;
     };
   };
   const std::size_t kept = std::min(candidates_.size(), static_cast<std::size_t>(width_));
   if (kept < candidates_.size()) {
     dropped_ = true;
-    // One half by either rank: no measure is right everywhere.
-    const auto half = candidates_.begin() + static_cast<std::ptrdiff_t>((kept + 1) / 2);
-    const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(kept);
-    std::nth_element(candidates_.begin(), half, candidates_.end(), by(&Candidate::rank));
-    if (half < end) std::nth_element(half, end, candidates_.end(), by(&Candidate::second_rank));
+    auto chosen = candidates_.begin();
+    for (std::size_t rank = 0; rank < kRankCount; ++rank) {
+      const std::size_t up_to = (kept * (rank + 1) + kRankCount - 1) / kRankCount;
+      const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(up_to);
+      if (chosen < end) std::nth_element(chosen, end, candidates_.end(), by(rank));
+      chosen = end;
+    }
     candidates_.resize(kept);
   }
-  std::sort(candidates_.begin(), candidates_.end(), by(&Candidate::rank));
+  std::sort(candidates_.begin(), candidates_.end(), by(0));
   next_level_.clear();
   next_visited_.resize(kept * words_);
   for (std::size_t i = 0; i < kept; ++i) {
@@ -246,21 +260,11 @@ void Beam::keep_best() {
   visited_.swap(next_visited_);
 }
 
-// The walk of a chain of first visits, every step of it.
 std::vector<NodeId> Beam::unroll(std::int64_t trail) const {
   std::vector<NodeId> order;
   for (; trail >= 0; trail = trail_[trail].before) order.push_back(trail_[trail].node);
   std::reverse(order.begin(), order.end());
-  std::vector<NodeId> walk = {start_.position};
-  std::vector<bool> visited = start_.visited;
-  for (const NodeId node : order) {
-    const std::vector<NodeId> path = path_to_nearest(
-        open_, walk.back(), [&](NodeId other) { return other == node; },
-        [&](NodeId other) { return visited[other] || other == node; });
-    walk.insert(walk.end(), path.begin(), path.end());
-    visited[node] = true;
-  }
-  return walk;
+  return walk_through(start_, order);
 }
 
 // The most memory a beam can come to need: every level's chain of first visits, and two levels of partial walks with
@@ -283,7 +287,8 @@ std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& optio
   return Beam(start, options, guide).run(deadline);
 }
 
-bool BeamPolicy::improve(const SearchStart& start, int width, Deadline deadline, std::optional<Plan>& best) {
+bool BeamPolicy::improve(const SearchStart& start, const BeamOptions& options, Deadline deadline,
+                         std::optional<Plan>& best) {
   const auto take = [&](std::optional<Plan> next) {
     if (!next) return false;
     const int gain = best ? visited_after(start, next->walk) - visited_after(start, best->walk) : 1;
@@ -292,19 +297,21 @@ bool BeamPolicy::improve(const SearchStart& start, int width, Deadline deadline,
     return true;
   };
   // The very first search is finished whatever it takes, so that there is a walk.
-  if (!take(beam_plan(start, {.width = width}, best ? deadline : Deadline()))) return false;
-  return !guide_ || best->optimal || take(beam_plan(start, {.width = width}, deadline, &*guide_));
+  if (!take(beam_plan(start, options, best ? deadline : Deadline()))) return false;
+  return !guide_ || best->optimal || take(beam_plan(start, options, deadline, &*guide_));
 }
 
 Plan BeamPolicy::plan(const SearchStart& start) {
   const Deadline deadline = deadline_after(limit_);
   std::optional<Plan> best;
-  improve(start, options_.width, deadline, best);
+  improve(start, options_, deadline, best);
   const int most = limit_ ? max_visited(start) : 0;
-  for (int width = 2 * options_.width; limit_; width *= 2) {
+  for (BeamOptions wider = options_; limit_;) {
+    wider.width *= 2;
+    wider.branching = std::min(2 * wider.branching, start.world->valid_count());
     best->optimal = best->optimal || visited_after(start, best->walk) >= most;
-    const bool too_wide = width > kMaxBeamWidth || bytes_needed(*start.world, width) > kMaxBeamBytes;
-    if (best->optimal || too_wide || !improve(start, width, deadline, best)) break;
+    const bool too_wide = wider.width > kMaxBeamWidth || bytes_needed(*start.world, wider.width) > kMaxBeamBytes;
+    if (best->optimal || too_wide || !improve(start, wider, deadline, best)) break;
   }
   return *std::move(best);
 }

@@ -8,23 +8,24 @@
 namespace graphdrl {
 
 struct BeamOptions {
-  int width = 50;  // partial walks kept per level
+  int width = 50;      // partial walks kept per level
+  int branching = 16;  // first visits looked at from each, nearest first; a guide looks at all that it sees
 };
 
 inline constexpr int kMaxBeamWidth = 1'000'000;
 inline constexpr double kMaxBeamBytes = 4e9;
 
-// The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. Half of a
-// level is kept by what was spent and penalties for what is left over, the other half by the same with lighter
-// penalties, or, with a guide, by what the network says will be visited in the end. Optimal where no partial walk had
-// to be dropped. Deterministic. Empty where the deadline passes first. Throws Error where the beam would need more than
-// kMaxBeamBytes.
+// The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. A level is
+// kept by three measures in equal parts: what was spent and all, some or none of the penalties for what is left over;
+// with a guide, what the network says will be visited in the end instead of the last.
+// Optimal where no partial walk had to be dropped and no first visit was left out. Deterministic. Empty where the
+// deadline passes first. Throws Error where the beam would need more than kMaxBeamBytes.
 std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline = {},
                               ExplorerGuide* guide = nullptr);
 
-// With a time limit, searches again and again with twice the width, until the time is up, a walk is known to be optimal
-// or memory would run short; the best walk counts. The first search without a guide, of the width given, is always
-// finished.
+// With a time limit, searches again and again with twice the width and branching, until the time is up, a walk is known
+// to be optimal or memory would run short; the best walk counts. The first search without a guide, of the width given,
+// is always finished.
 class BeamPolicy final : public PlanPolicy {
  public:
   explicit BeamPolicy(BeamOptions options, TimeLimit limit = {}) : options_(options), limit_(limit) {}
@@ -37,8 +38,9 @@ class BeamPolicy final : public PlanPolicy {
   Plan plan(const SearchStart& start) override;
 
  private:
-  // Searches with this width, by each way of ranking; `best` becomes the better walk.
-  bool improve(const SearchStart& start, int width, Deadline deadline, std::optional<Plan>& best);
+  // Searches once without and, if there is one, once with the guide; `best` becomes the better walk. False where the
+  // time is up.
+  bool improve(const SearchStart& start, const BeamOptions& options, Deadline deadline, std::optional<Plan>& best);
 
   BeamOptions options_;
   TimeLimit limit_;

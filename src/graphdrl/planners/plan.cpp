@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 
@@ -21,6 +24,23 @@ int visited_after(const SearchStart& start, std::span<const NodeId> walk) {
   std::vector<bool> visited = start.visited;
   for (const NodeId node : walk) visited[node] = true;
   return static_cast<int>(std::count(visited.begin(), visited.end(), true));
+}
+
+std::vector<NodeId> walk_through(const SearchStart& start, std::span<const NodeId> first_visits) {
+  std::vector<NodeId> walk = {start.position};
+  std::vector<bool> visited = start.visited;
+  NearestFirst nearest(start.world->open());
+  for (const NodeId target : first_visits) {
+    using Next = NearestFirst::Next;
+    nearest.run(walk.back(), std::numeric_limits<double>::infinity(), [&](NodeId node, double) {
+      if (node == target) return Next::kEnd;
+      return visited[node] ? Next::kThrough : Next::kPast;
+    });
+    const std::vector<NodeId> way = nearest.path_to(target);
+    walk.insert(walk.end(), way.begin(), way.end());
+    visited[target] = true;
+  }
+  return walk;
 }
 
 double walk_cost(const World& world, std::span<const NodeId> walk) {

@@ -55,6 +55,10 @@ class PlanPolicy : public SingleEpisodePolicy {
 // Valid nodes visited after a walk, those before it among them.
 int visited_after(const SearchStart& start, std::span<const NodeId> walk);
 
+// The walk that makes these first visits one after the other, each by the cheapest way through visited ground.
+// REQUIRES: there is such a way.
+std::vector<NodeId> walk_through(const SearchStart& start, std::span<const NodeId> first_visits);
+
 // What the steps of a walk cost; a repeated node is a blocked move and costs 1. REQUIRES: every other step follows an
 // edge.
 double walk_cost(const World& world, std::span<const NodeId> walk);
