@@ -1,6 +1,7 @@
 // The table of docs/explorer.md: the explorer and the planners on worlds of the test split, or, to choose among
 // variants, of the validation split.
-//   explorer_table [--policy FILE] [--validation] [--quick]
+//   explorer_table [--policy FILE] [--validation] [--quick] [--alone] [--only TEXT]
+// --quick: few worlds; --alone: the explorer and nearest only; --only: worlds whose name holds the text.
 // Every walk is walked through an Episode before it counts. Intervals are 95 % of the mean over worlds, a world's
 // figure being the mean over its starts.
 #include <fmt/format.h>
@@ -37,6 +38,8 @@ struct Case {
 };
 
 Split split_shown = Split::kTest;
+bool alone_only = false;
+std::string_view only;
 
 Case of_split(const WorldSpec& spec, double budget, int worlds, int starts, bool wide = false, bool solved = false) {
   return {spec.name(),
@@ -78,6 +81,11 @@ std::string difference(const Column& a, const Column& b) {
   return with_interval(values);
 }
 
+bool is_shown(const Case& one, const Column& column) {
+  if (alone_only) return column.name == "nearest" || column.name == "explorer";
+  return one.wide || !column.wide;
+}
+
 enum { kNearest, kBeam16, kBeam50, kBeam1000, kExplorer, kGuided16, kGuided50 };
 
 std::vector<Column> make_columns(const SharedExplorer& explorer) {
@@ -114,7 +122,7 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
     }
     const auto share = 100 / n / static_cast<double>(starts.size());
     for (Column& column : columns) {
-      if (one.wide || !column.wide) column.coverage.push_back(0);
+      if (is_shown(one, column)) column.coverage.push_back(0);
     }
     bounds.push_back(0);
     for (const NodeId start : starts) {
@@ -122,7 +130,7 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
       const std::optional<int> best = one.solved ? exact_gain(from) : std::nullopt;
       bounds.back() += share * (best ? *best + 1 : max_visited(from));
       for (Column& column : columns) {
-        if (column.wide && !one.wide) continue;
+        if (!is_shown(one, column)) continue;
         const auto begin = std::chrono::steady_clock::now();
         const std::vector<NodeId> walk = column.walk(from);
         const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
@@ -157,7 +165,7 @@ int print_table(const SharedExplorer& explorer, bool quick) {
   std::vector<Case> cases;
   const int many = quick ? 30 : 300;
   const int some = quick ? 10 : 100;
-  const int few = quick ? 5 : 40;
+  const int few = quick ? 5 : 100;
   const std::vector<World> paper = load_worlds({"paper"});
   cases.push_back({"paper:a–j", 25, 10, kAllStarts, true, true, [&](int index) { return paper[index]; }});
   cases.push_back(of_split({"obstacles", 5}, 1.1, many, kAllStarts, true, true));
@@ -177,7 +185,7 @@ int print_table(const SharedExplorer& explorer, bool quick) {
     }
   }
   for (const WorldSpec& spec : {WorldSpec{"obstacles", 60}, {"loop-maze", 61}, {"rooms", 60}}) {
-    cases.push_back(of_split(spec, 1.0, quick ? 2 : 8, 1));
+    cases.push_back(of_split(spec, 1.0, quick ? 2 : 16, 1));
   }
   std::string header = "| worlds | nodes | budget |";
   for (const Column& column : make_columns(explorer)) header += fmt::format(" {} |", column.name);
@@ -187,7 +195,9 @@ int print_table(const SharedExplorer& explorer, bool quick) {
       "guided:16 | guided:50 | a first visit of the explorer |\n|---|";
   for (int i = 0; i < 19; ++i) header += "---|";
   std::fputs((header + '\n').c_str(), stdout);
-  for (const Case& one : cases) print_case(one, explorer);
+  for (const Case& one : cases) {
+    if (one.name.find(only) != std::string::npos) print_case(one, explorer);
+  }
   return 0;
 }
 
@@ -202,12 +212,16 @@ int main(int argc, char** argv) {
     const std::string_view argument = argv[i];
     if (argument == "--quick") {
       quick = true;
+    } else if (argument == "--alone") {
+      alone_only = true;
     } else if (argument == "--validation") {
       split_shown = Split::kValidation;
+    } else if (argument == "--only" && i + 1 < argc) {
+      only = argv[++i];
     } else if (argument == "--policy" && i + 1 < argc) {
       explorer = read_explorer_file(argv[++i]);
     } else {
-      std::fputs("usage: explorer_table [--policy FILE] [--validation] [--quick]\n", stderr);
+      std::fputs("usage: explorer_table [--policy FILE] [--validation] [--quick] [--alone] [--only TEXT]\n", stderr);
       return 2;
     }
   }

@@ -92,6 +92,7 @@ TEST(ExplorerFeatures, AreWorkedOutByHand) {
   EXPECT_EQ(to_3[0], 1.0f / 8);
   EXPECT_EQ(to_3[1], -4.0f / 4);  // an isolated node less
   EXPECT_EQ(to_3[3], 2.0f / 8);
+  EXPECT_EQ(to_3[10], 1);
 }
 
 TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
@@ -102,6 +103,14 @@ TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   EXPECT_EQ(batch.graphs.graph(0).node_count(), 11);
   encoder.append(Walked(world, 100, 500).state(), kExplorerScope, batch);
   EXPECT_EQ(batch.graphs.graph(1).node_count(), kExplorerScope);
+  // Each of its two ends has one neighbour of two out of scope.
+  double out_of_scope = 0;
+  for (int row = 11; row < batch.graphs.node_count(); ++row) {
+    out_of_scope += batch.node_x[static_cast<std::size_t>(row * kExplorerNodeFeatureCount + 9)];
+  }
+  EXPECT_EQ(out_of_scope, 1);
+  EXPECT_EQ(batch.unseen[0], 0);
+  EXPECT_DOUBLE_EQ(batch.unseen[1], 1 - 95.0 / 199);
   // Far from any unvisited node, the scope grows until a first visit is in it.
   Walked walked(world, 0, 1000);
   for (NodeId node = 1; node < 150; ++node) walked.visit(node, 1);

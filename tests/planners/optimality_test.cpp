@@ -128,14 +128,6 @@ TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
   EXPECT_TRUE(beam_plan(start, {.width = 1000, .branching = 200})->optimal);
 }
 
-TEST(Guided, RefusesWeightsThatGiveNoNumbers) {
-  Rng rng(1);
-  auto parameters = std::make_shared<ExplorerParameters>(rng);
-  for (float& value : parameters->values()) value *= 1e38f;
-  const World world = grid_world("...\n...\n");
-  EXPECT_THROW(ExplorerPolicy(parameters).plan(search_start(world, 0, 9)), Error);
-}
-
 TEST(Optimality, PlansGoOnFromWhereSomeoneElseLed) {
   Rng rng(12);
   for (int i = 0; i < 500; ++i) {

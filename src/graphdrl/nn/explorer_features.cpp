@@ -40,7 +40,7 @@ void ExplorerBatch::clear() {
   graphs.clear();
   for (auto* values : {&node_x, &visit_x}) values->clear();
   for (auto* values : {&current, &target, &state}) values->clear();
-  ceiling.clear();
+  for (auto* values : {&ceiling, &unseen}) values->clear();
   parts.clear();
 }
 
@@ -214,8 +214,14 @@ std::span<const FirstVisit> ExplorerEncoder::append(const ExplorerState& state, 
   const BudgetView view(share * budget, share * work);
 
   const int first_row = batch.graphs.node_count() - static_cast<int>(size);
+  for (std::size_t i = 0; i < size; ++i) number_[seen[i]] = first_row + static_cast<int>(i);
   batch.node_x.resize(static_cast<std::size_t>(batch.graphs.node_count()) * kExplorerNodeFeatureCount);
   float* x = batch.node_x.data() + static_cast<std::ptrdiff_t>(first_row) * kExplorerNodeFeatureCount;
+  const auto out_of_scope = [&](NodeId row) {
+    int count = 0;
+    for (const NodeId next : graph_.neighbours(row)) count += number_[next] == kNoNode;
+    return static_cast<float>(count) / static_cast<float>(std::max(graph_.degree(row), 1));
+  };
   for (const NodeId row : seen) {
     const bool open = unvisited_[row];
     const float* const fixed = fixed_.data() + 3 * static_cast<std::ptrdiff_t>(row);
@@ -228,7 +234,7 @@ std::span<const FirstVisit> ExplorerEncoder::append(const ExplorerState& state, 
     x[6] = open && unvisited_neighbours_[row] == 1;
     x[7] = near_scale(distance_[row]);
     x[8] = near_scale(visit_cost_[row]);
-    x[9] = distance_[row] < kInfinite;
+    x[9] = whole ? 0 : out_of_scope(row);
     x[10] = near_scale(work_distance_[row] < 0 ? kFar : work_distance_[row]);
     x[11] = log_scale(part_size_[row]);
     x[12] = static_cast<float>(std::min(part_size_[row] / std::max(work, 1.0), 1.0));
@@ -242,7 +248,6 @@ std::span<const FirstVisit> ExplorerEncoder::append(const ExplorerState& state, 
     x += kExplorerNodeFeatureCount;
   }
 
-  for (std::size_t i = 0; i < size; ++i) number_[seen[i]] = first_row + static_cast<int>(i);
   const int index = batch.graphs.graph_count() - 1;
   overlooked_ =
       std::erase_if(visits_, [&](const FirstVisit& visit) { return number_[row_of_[visit.node]] == kNoNode; }) > 0;
@@ -260,12 +265,13 @@ std::span<const FirstVisit> ExplorerEncoder::append(const ExplorerState& state, 
         batch.visit_x.end(),
         {near_scale(visit_cost_[row]), static_cast<float>(change / 4), log_scale(unvisited_neighbours_[row]),
          near_scale(next_cost), after.per_work, after.slack, log_scale(work), static_cast<float>(hanging_[row]),
-         log_scale(hanging_size_[row]), near_scale(hanging_height_[row])});
+         log_scale(hanging_size_[row]), near_scale(hanging_height_[row]), static_cast<float>(share)});
     batch.target.push_back(number_[row]);
     batch.state.push_back(index);
   }
   batch.current.push_back(number_[row_of_[state.position]]);
   batch.ceiling.push_back(std::min(work, budget));
+  batch.unseen.push_back(1 - share);
   for (const NodeId row : seen) number_[row] = kNoNode;
   return visits_;
 }

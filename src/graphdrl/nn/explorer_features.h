@@ -27,7 +27,7 @@ inline constexpr std::array<std::string_view, 20> kExplorerNodeFeatures = {
     "dead_end",              // flag: unvisited, and so is one neighbour
     "distance",              // cost from the current node, through any ground
     "visit_cost",            // cost of the first visit; 0 of other nodes
-    "in_reach",              // flag: can be had for the budget left; 1 of all nodes in the scope
+    "out_of_scope",          // share of the node's neighbours that the network does not see
     "distance_to_work",      // steps to the nearest unvisited node
     "part_size",             // count: unvisited nodes connected through unvisited ones
     "part_share",            // of all unvisited nodes in reach
@@ -41,7 +41,7 @@ inline constexpr std::array<std::string_view, 20> kExplorerNodeFeatures = {
 };
 inline constexpr int kExplorerNodeFeatureCount = static_cast<int>(kExplorerNodeFeatures.size());
 
-inline constexpr std::array<std::string_view, 10> kExplorerVisitFeatures = {
+inline constexpr std::array<std::string_view, 11> kExplorerVisitFeatures = {
     "cost",                  // cost
     "change_of_penalties",   // change_of_penalties() / 4
     "unvisited_neighbours",  // count, of the target
@@ -52,6 +52,7 @@ inline constexpr std::array<std::string_view, 10> kExplorerVisitFeatures = {
     "hanging",               // as of the target
     "hanging_size",          // likewise
     "hanging_height",        // likewise
+    "work_in_scope",         // share of the work that the network sees; the same of all
 };
 inline constexpr int kExplorerVisitFeatureCount = static_cast<int>(kExplorerVisitFeatures.size());
 
@@ -73,10 +74,11 @@ struct ExplorerBatch {
   GraphBatch graphs;
   std::vector<float> node_x;    // [N, 20]
   std::vector<int> current;     // [B], the current node's row
-  std::vector<float> visit_x;   // [C, 10]
+  std::vector<float> visit_x;   // [C, 11]
   std::vector<int> target;      // [C], the row of the node visited
   std::vector<int> state;       // [C], the state it belongs to; visits of a state stand together
   std::vector<double> ceiling;  // [B], about what a walk can still visit: nodes in reach, or what the budget pays for
+  std::vector<double> unseen;   // [B], the share of the unvisited nodes in reach that is out of scope
   std::deque<Graph> parts;      // of worlds, which `graphs` points to
 
   void clear();

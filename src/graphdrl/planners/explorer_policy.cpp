@@ -1,12 +1,19 @@
 #include "graphdrl/planners/explorer_policy.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/planners/beam.h"
 
 namespace graphdrl {
+namespace {
+
+// Nodes for a mean edge's cost, and nodes, where all work is out of scope. Chosen on the validation split.
+constexpr double kWorthOfBudget = 0.5;
+constexpr double kIndifference = 0.4;
+
+}  // namespace
 
 SharedExplorer builtin_explorer() {
   static const SharedExplorer explorer = std::make_shared<const ExplorerParameters>(
@@ -31,8 +38,40 @@ void ExplorerGuide::score(const ExplorerBatch& batch, std::vector<float>& shortf
   }
 }
 
+std::size_t ExplorerGuide::choose(const World& world, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
+  score(batch, shortfall_);
+  const double unseen = batch.unseen[0];
+  const double unit = world.open().mean_cost();
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    shortfall_[i] += static_cast<float>(kWorthOfBudget * unseen * visits[i].cost / unit);
+  }
+  const float least = *std::min_element(shortfall_.begin(), shortfall_.end());
+  const auto good_enough = [&](float value) { return value <= least + kIndifference * unseen * unseen; };
+  return static_cast<std::size_t>(std::find_if(shortfall_.begin(), shortfall_.end(), good_enough) - shortfall_.begin());
+}
+
 Plan ExplorerPolicy::plan(const SearchStart& start) {
-  return *beam_plan(start, {.width = 1}, {}, &guide_);
+  ExplorerEncoder& encoder = guide_.encoder_for(*start.world);
+  std::vector<std::uint64_t> visited((start.visited.size() + 63) / 64);
+  for (std::size_t node = 0; node < start.visited.size(); ++node) {
+    if (start.visited[node]) visited[node / 64] |= std::uint64_t{1} << (node % 64);
+  }
+  ExplorerState state{.visited = visited.data(), .position = start.position, .spendable = start.limit()};
+  ExplorerBatch batch;
+  std::vector<NodeId> first_visits;
+  bool optimal = true;
+  for (;;) {
+    batch.clear();
+    const std::span<const FirstVisit> visits = encoder.append(state, kExplorerScope, batch);
+    if (visits.empty()) break;
+    optimal = optimal && visits.size() == 1 && !encoder.overlooked();
+    const FirstVisit& choice = visits[guide_.choose(*start.world, batch, visits)];
+    first_visits.push_back(choice.node);
+    visited[choice.node / 64] |= std::uint64_t{1} << (choice.node % 64);
+    state.position = choice.node;
+    state.spendable -= choice.cost;
+  }
+  return {.walk = walk_through(start, first_visits), .optimal = optimal};
 }
 
 }  // namespace graphdrl

@@ -37,13 +37,20 @@ class ExplorerGuide {
   // Throws Error where the network's weights are so large that it gives no number.
   void score(const ExplorerBatch& batch, std::vector<float>& shortfall);
 
+  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. Where all the
+  // work is in scope, the one of the least shortfall. Out of scope the network knows nothing of what budget and order
+  // are worth: the larger the part of the work there, the more does the cost of a first visit count beside its
+  // shortfall, and the farther may the nearest fall behind the best and still be taken.
+  std::size_t choose(const World& world, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
+
  private:
   SharedExplorer parameters_;
   ExplorerNetwork network_;
+  std::vector<float> shortfall_;
   std::map<const World*, ExplorerEncoder> encoders_;
 };
 
-// The explorer alone: at every first visit, the one that the network says leads to most; the lowest id among equals.
+// The explorer alone: one first visit after the other, each as ExplorerGuide::choose says.
 class ExplorerPolicy final : public PlanPolicy {
  public:
   explicit ExplorerPolicy(SharedExplorer parameters) : guide_(std::move(parameters)) {}

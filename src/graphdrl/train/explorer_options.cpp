@@ -11,7 +11,7 @@ void validate(const ExplorerOptions& options) {
   check_choice("--preset", options.preset, {"explorer"});
   check_choice("--teacher", options.teacher, {"search", "double_dqn"});
   check_range<std::int64_t>("--rounds", options.rounds, 1, kMany);
-  check_range<std::int64_t>("--largest", options.largest, 5, 51);
+  check_range<std::int64_t>("--largest", options.largest, 5, 20);
   check_range<std::int64_t>("--teacher-width", options.teacher_width, 1, 100'000);
   check_range("--ranking", options.ranking, 0.0, 1e3);
   check_range("--lead", options.lead, 0.0, 1.0);
@@ -26,21 +26,24 @@ void validate(const ExplorerOptions& options) {
 std::vector<WorldSpec> training_worlds(const ExplorerOptions& options) {
   const int largest = static_cast<int>(options.largest);
   std::vector<WorldSpec> worlds;
-  for (int side = 4; side <= largest; ++side) {
-    worlds.push_back({"obstacles", side});
+  for (const int side : {4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 20}) {
+    if (side > largest) break;
+    for (int copy = 0; copy < (side == 5 ? 5 : 1); ++copy) worlds.push_back({"obstacles", side});
     worlds.push_back({"rooms", side});
     if (side % 2 == 0) continue;
     for (const char* const family : {"maze", "loop-maze", "braided-maze"}) {
-      for (int copy = 0; copy < (side > 5 ? 3 : 1); ++copy) worlds.push_back({family, side});
+      for (int copy = 0; copy < (side >= 7 && side <= 11 ? 3 : 1); ++copy) worlds.push_back({family, side});
     }
   }
-  for (int copy = 0; copy < 4; ++copy) worlds.push_back({"obstacles", 5});
   for (const char* const family : {"tree", "erdos-renyi", "barabasi-albert", "watts-strogatz", "geometric"}) {
-    for (const int nodes : {3 * largest / 2, 3 * largest, 5 * largest, 7 * largest}) {
+    for (const int nodes : {16, 33, 55, 77, 110, 140}) {
+      if (nodes > 7 * largest) break;
       worlds.push_back({family, nodes});
       worlds.push_back({family, nodes, /*weighted=*/true});
       if (family == std::string("tree")) continue;  // one way only, a tree is soon left for good
-      if (nodes < 5 * largest) worlds.push_back({family, nodes, /*weighted=*/nodes % 2 == 0, /*directed=*/true});
+      if (nodes > 77) continue;
+      worlds.push_back({family, nodes, /*weighted=*/false, /*directed=*/true});
+      if (nodes <= 33) worlds.push_back({family, nodes, /*weighted=*/true, /*directed=*/true});
     }
   }
   return worlds;

@@ -14,8 +14,8 @@ namespace graphdrl {
 struct ExplorerOptions {
   std::string preset = "explorer";
   std::uint64_t seed = 1;
-  std::int64_t rounds = 330;
-  std::int64_t largest = 11;
+  std::int64_t rounds = 210;
+  std::int64_t largest = 20;
   std::string teacher = "search";
   std::int64_t teacher_width = 24;
   double ranking = 1;
@@ -35,7 +35,8 @@ void for_each_explorer_field(Options& options, Field&& field) {
   field("seed", options.seed,
         "The same seed gives the same policy file, byte for byte (same build and machine; on the CPU)");
   field("rounds", options.rounds, "Rounds of walks and updates; the learning rate falls over all of them");
-  field("largest", options.largest, "Largest side of training grids; graphs have up to seven times as many nodes");
+  field("largest", options.largest,
+        "Largest side of training grids, at most 20; graphs have up to seven times as many nodes");
   field("teacher", options.teacher,
         "Where values come from: search, or double_dqn, bootstrapped from the network's own");
   field("teacher_width", options.teacher_width, "Width of the beam that values a first visit");

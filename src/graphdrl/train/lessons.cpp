@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kNearestLabelled = 3;
 constexpr std::size_t kMostLabelled = 6;
+constexpr int kTeacherBranching = 8;  // twice as many cost twice as much and value hardly better
 
 SearchStart search_start_of(const Lesson& walk) {
   SearchStart start{
@@ -26,7 +27,7 @@ SearchStart search_start_of(const Lesson& walk) {
 int gain_by_search(const Lesson& walk, int width) {
   const SearchStart start = search_start_of(walk);
   const auto before = std::count(start.visited.begin(), start.visited.end(), true);
-  const Plan plan = *beam_plan(start, {.width = width});
+  const Plan plan = *beam_plan(start, {.width = width, .branching = kTeacherBranching});
   return visited_after(start, plan.walk) - static_cast<int>(before);
 }
 
@@ -59,7 +60,7 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
               .choice = 0,
               .shortfall = {}};
   visit(walk, {start, 0});
-  if (chance(0.5)) {
+  if (chance(0.25)) {
     walk.scope = options.least_scope +
                  static_cast<int>(rng.below(static_cast<std::uint32_t>(kExplorerScope - options.least_scope)));
   }

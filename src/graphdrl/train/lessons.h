@@ -18,7 +18,7 @@ struct LessonOptions {
   double lead;                    // chance of a walk to be led by the network, else by penalties and search
   double least_budget = 0.5;      // times valid nodes and mean cost
   double most_budget = 1.7;
-  int least_scope = 24;     // half of the walks are seen through a smaller scope than the explorer's, at least this
+  int least_scope = 24;     // a walk in four is seen through a smaller scope than the explorer's, at least this
   int states_per_walk = 6;  // asked for of each walk; states with a single first visit teach nothing
   double explore = 0.15;    // chance of a random first visit on the way
 };

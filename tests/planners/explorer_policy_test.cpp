@@ -1,0 +1,71 @@
+#include "graphdrl/planners/explorer_policy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/env/world_families.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+TEST(Explorer, RefusesWeightsThatGiveNoNumbers) {
+  Rng rng(1);
+  auto parameters = std::make_shared<ExplorerParameters>(rng);
+  for (float& value : parameters->values()) value *= 1e38f;
+  const World world = grid_world("...\n...\n");
+  EXPECT_THROW(ExplorerPolicy(parameters).plan(search_start(world, 0, 9)), Error);
+}
+
+// Walks at random and compares each choice with the first visit of the least shortfall.
+struct Choices {
+  int same = 0;
+  int nearer = 0;
+  int farther = 0;
+};
+
+Choices compare_choices(const WorldSpec& spec) {
+  const World world = split_world(spec, Split::kValidation, 0);
+  ExplorerGuide guide(builtin_explorer());
+  ExplorerEncoder& encoder = guide.encoder_for(world);
+  Rng rng(2);
+  std::vector<std::uint64_t> visited((static_cast<std::size_t>(world.graph().node_count()) + 63) / 64);
+  ExplorerState state{
+      .visited = visited.data(), .position = world.valid_nodes()[0], .spendable = 1.0 * world.valid_count()};
+  ExplorerBatch batch;
+  std::vector<float> shortfall;
+  Choices result;
+  for (int i = 0; i < 200; ++i) {
+    visited[state.position / 64] |= std::uint64_t{1} << (state.position % 64);
+    batch.clear();
+    const auto visits = encoder.append(state, kExplorerScope, batch);
+    if (visits.empty()) break;
+    guide.score(batch, shortfall);
+    const auto least =
+        static_cast<std::size_t>(std::min_element(shortfall.begin(), shortfall.end()) - shortfall.begin());
+    const std::size_t choice = guide.choose(world, batch, visits);
+    (choice == least ? result.same : visits[choice].cost <= visits[least].cost ? result.nearer : result.farther) += 1;
+    const FirstVisit next = visits[rng.below(3) == 0 ? rng.below(static_cast<std::uint32_t>(visits.size())) : choice];
+    state.position = next.node;
+    state.spendable -= next.cost;
+  }
+  return result;
+}
+
+TEST(Explorer, TakesTheNetworksChoiceWhereItSeesAllTheWork) {
+  const Choices choices = compare_choices({"obstacles", 8});
+  EXPECT_GT(choices.same, 20);
+  EXPECT_EQ(choices.nearer + choices.farther, 0);
+}
+
+TEST(Explorer, PrefersNearerFirstVisitsWhereMostWorkIsOutOfSight) {
+  const Choices choices = compare_choices({"obstacles", 30});
+  EXPECT_GT(choices.same, 20);
+  EXPECT_GT(choices.nearer, 20);
+  EXPECT_EQ(choices.farther, 0);
+}
+
+}  // namespace
+}  // namespace graphdrl
