@@ -106,6 +106,8 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
     ASSERT_EQ(follow(guided->walk).visited, optimum.visited);
     const auto narrow = beam_plan(start, {.width = 1}, {}, &guide);
     ASSERT_TRUE(!narrow->optimal || follow(narrow->walk).visited == optimum.visited);
+    const Plan alone = ExplorerPolicy(builtin_explorer()).plan(start);
+    ASSERT_TRUE(!alone.optimal || follow(alone.walk).visited == optimum.visited);
     for (const char* const name :
          {"random", "random-walk", "dfs", "nearest", "beam:2", "explorer", "guided:2", "exact"}) {
       const auto policy = make_policy(name, 1);
@@ -124,8 +126,34 @@ TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
   const SearchStart start = search_start(star, 0, 1);
   ExplorerGuide guide(builtin_explorer());
   EXPECT_FALSE(beam_plan(start, {.width = 1000}, {}, &guide)->optimal);
-  EXPECT_FALSE(beam_plan(start, {.width = 1000, .branching = 199})->optimal);
-  EXPECT_TRUE(beam_plan(start, {.width = 1000, .branching = 200})->optimal);
+  EXPECT_FALSE(ExplorerPolicy(builtin_explorer()).plan(start).optimal);
+  EXPECT_TRUE(beam_plan(start, {.width = 1000})->optimal) << "all leaves are as near as the sixteenth";
+  EXPECT_FALSE(beam_plan(start, {.width = 1000, .cut_ties = true})->optimal);
+  // One way out of 200, each longer than the last.
+  for (Edge& ray : rays) ray.cost = ray.b;
+  const World longer("longer", Graph::from_edges(201, rays, EdgeKind::kDirected), std::vector<bool>(201));
+  const SearchStart far = search_start(longer, 0, 200);
+  EXPECT_FALSE(beam_plan(far, {.width = 1000})->optimal);
+  EXPECT_TRUE(beam_plan(far, {.width = 1000, .branching = 200})->optimal);
+}
+
+TEST(Beam, TakesTheLongWayPastManyLeavesWhereTheBudgetIsShort) {
+  // A hub with leaves, each of which costs two steps, and a path, each node of which costs one. Whatever the numbering,
+  // the path is among the first visits looked at, and the rank without penalties prefers it.
+  constexpr NodeId kNodes = 100;
+  for (const NodeId leaves : {10, 40}) {
+    for (const bool path_first : {false, true}) {
+      std::vector<Edge> edges;
+      for (NodeId i = 1; i < kNodes; ++i) {
+        const bool on_path = path_first ? i < kNodes - leaves : i > leaves;
+        const bool first = path_first ? i == 1 : i == leaves + 1;
+        edges.push_back({on_path && !first ? i - 1 : 0, i});
+      }
+      const World world("hub", Graph::from_edges(kNodes, edges), std::vector<bool>(kNodes));
+      const SearchStart start = search_start(world, 0, 40);
+      EXPECT_EQ(visited_after(start, beam_plan(start, {})->walk), 41) << leaves << path_first;
+    }
+  }
 }
 
 TEST(Optimality, PlansGoOnFromWhereSomeoneElseLed) {
@@ -200,9 +228,9 @@ TEST(Beam, WithTimeWidensUntilNothingIsDropped) {
   for (const NodeId node : world.valid_nodes()) {
     const SearchStart start = search_start(world, node, 20);
     const int optimum = 1 + *exact_gain(start);
-    const Plan narrow = BeamPolicy({.width = 1}).plan(start);
+    const Plan narrow = BeamPolicy({.width = 1, .branching = 1}).plan(start);
     improved += visited_after(start, narrow.walk) < optimum;
-    const Plan wide = BeamPolicy({.width = 1}, ample).plan(start);
+    const Plan wide = BeamPolicy({.width = 1, .branching = 1}, ample).plan(start);
     EXPECT_TRUE(wide.optimal);
     EXPECT_EQ(visited_after(start, wide.walk), optimum);
     const Plan exact = ExactPolicy(ample).plan(start);

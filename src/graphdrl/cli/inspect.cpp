@@ -67,6 +67,7 @@ struct ExplorerStep {
   std::vector<FirstVisit> visits;
   ExplorerBatch seen;            // this state alone
   std::vector<float> shortfall;  // [C]
+  std::size_t choice = 0;        // the place of the first visit it makes
 };
 
 std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const World& world, const InspectOptions& options) {
@@ -74,16 +75,18 @@ std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const World& world,
   Episode episode(world, {.budget = budget, .action_space = action_space_of(world)});
   std::vector<ExplorerStep> steps;
   follow_walk(episode, options.walk, [&](const Observation& observation) {
-    std::vector<std::uint64_t> visited((static_cast<std::size_t>(world.graph().node_count()) + 63) / 64);
-    for (NodeId node = 0; node < world.graph().node_count(); ++node) {
-      if (observation.visited(node)) visited[node / 64] |= std::uint64_t{1} << (node % 64);
-    }
+    std::vector<bool> visited;
+    for (NodeId node = 0; node < world.graph().node_count(); ++node) visited.push_back(observation.visited(node));
+    const std::vector<std::uint64_t> bits = bits_of(visited);
     ExplorerStep step{.position = observation.position, .visits = {}, .seen = {}, .shortfall = {}};
     const auto visits = guide.encoder_for(world).append(
-        {.visited = visited.data(), .position = observation.position, .spendable = observation.spendable},
-        kExplorerScope, step.seen);
+        {.visited = bits.data(), .position = observation.position, .spendable = observation.spendable}, kExplorerScope,
+        step.seen);
     step.visits.assign(visits.begin(), visits.end());
-    if (!visits.empty()) guide.score(step.seen, step.shortfall);
+    if (!visits.empty()) {
+      guide.score(step.seen, step.shortfall);
+      step.choice = guide.choose(world, step.seen, visits);
+    }
     steps.push_back(std::move(step));
   });
   return steps;
@@ -109,8 +112,11 @@ Json to_json(const std::vector<ExplorerStep>& steps) {
            {"shortfall", step.shortfall[i]},
            {"features", named(&step.seen.visit_x[i * kExplorerVisitFeatureCount], kExplorerVisitFeatures)}});
     }
-    json.push_back(
-        {{"position", step.position}, {"ceiling", step.seen.ceiling[0]}, {"first_visits", visits}, {"nodes", nodes}});
+    json.push_back({{"position", step.position},
+                    {"ceiling", step.seen.ceiling[0]},
+                    {"choice", step.visits.empty() ? Json() : Json(step.visits[step.choice].node)},
+                    {"first_visits", visits},
+                    {"nodes", nodes}});
   }
   return json;
 }
@@ -124,13 +130,11 @@ std::string format_steps(const std::vector<ExplorerStep>& steps) {
                     step.visits.empty() ? "nothing left in reach"
                                         : fmt::format("at most {:g} more, less the shortfall", step.seen.ceiling[0]));
     if (step.visits.empty()) continue;
-    const auto best = std::min_element(step.shortfall.begin(), step.shortfall.end()) - step.shortfall.begin();
     text += "  first visit  shortfall";
     for (const std::string_view name : kExplorerVisitFeatures) text += fmt::format("  {}", name);
     text += '\n';
     for (std::size_t v = 0; v < step.visits.size(); ++v) {
-      text += fmt::format("  {:>10}{}  {:9.3f}", step.visits[v].node,
-                          best == static_cast<std::ptrdiff_t>(v) ? "*" : " ", step.shortfall[v]);
+      text += fmt::format("  {:>10}{}  {:9.3f}", step.visits[v].node, v == step.choice ? "*" : " ", step.shortfall[v]);
       for (int f = 0; f < kExplorerVisitFeatureCount; ++f) {
         text += fmt::format("  {:>{}.3g}", step.seen.visit_x[v * kExplorerVisitFeatureCount + f],
                             kExplorerVisitFeatures[f].size());

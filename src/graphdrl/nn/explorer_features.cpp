@@ -44,6 +44,13 @@ void ExplorerBatch::clear() {
   parts.clear();
 }
 
+std::vector<std::uint64_t> bits_of(const std::vector<bool>& visited) {
+  std::vector<std::uint64_t> bits((visited.size() + 63) / 64);
+  for (std::size_t node = 0; node < visited.size(); ++node)
+    bits[node / 64] |= std::uint64_t{visited[node]} << (node % 64);
+  return bits;
+}
+
 double leftover_penalty(int unvisited_neighbours) {
   return unvisited_neighbours == 0 ? 4.0 : unvisited_neighbours == 1 ? 2.0 : 0.0;
 }

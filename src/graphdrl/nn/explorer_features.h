@@ -69,6 +69,9 @@ struct ExplorerState {
   double spendable;
 };
 
+// A bit per node.
+std::vector<std::uint64_t> bits_of(const std::vector<bool>& visited);
+
 // B states with C first visits together.
 struct ExplorerBatch {
   GraphBatch graphs;

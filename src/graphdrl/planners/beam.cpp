@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <unordered_map>
 
 #include "graphdrl/base/error.h"
@@ -15,12 +16,12 @@ namespace graphdrl {
 namespace {
 
 constexpr std::uint64_t kHashSeed = 1;
-// A third of a level is kept by each of three measures, for none is right everywhere. Without a guide they differ in
-// the share of the penalties: all of them serve mazes best, a quarter graphs without dead ends, none budgets that will
-// not do for everything, where what is left over costs nothing. A guide knows of budgets and stands for the last.
-constexpr std::size_t kRankCount = 3;
-constexpr std::array<double, kRankCount> kPenaltyShare = {1, 0.25, 0};
-constexpr int kBlockNodes = 8192;  // of states scored at once
+// A third of a level is kept by each of three measures, for none is right everywhere. They differ in their share of the
+// penalties: all of them serve mazes best, a quarter graphs without dead ends, none budgets that will not do for
+// everything, where what is left over costs nothing.
+constexpr std::array<double, 3> kPenaltyShares = {1, 0.25, 0};
+using Ranks = std::array<double, kPenaltyShares.size()>;  // lower is better
+constexpr int kBlockNodes = 8192;                         // of states scored at once
 
 // A partial walk. Its visited nodes are a row of words in the level's memory.
 struct Partial {
@@ -37,7 +38,7 @@ struct Candidate {
   NodeId node;
   double spent;
   double penalties;
-  std::array<double, kRankCount> rank;  // lower is better
+  Ranks ranks;
   std::uint64_t hash;
 };
 
@@ -55,6 +56,7 @@ class Beam {
         start_(start),
         width_(options.width),
         branching_(options.branching),
+        cut_ties_(options.cut_ties),
         guide_(guide),
         words_((static_cast<std::size_t>(open_.node_count()) + 63) / 64),
         unit_(open_.mean_cost()),
@@ -77,6 +79,7 @@ class Beam {
   bool expand_level(Deadline deadline);
   void expand(int parent);
   void expand_guided(int first, int count);
+  Ranks ranks_of(double spent, double penalties) const;
   void add(const Candidate& candidate);
   void keep_best();
   std::vector<NodeId> unroll(std::int64_t trail) const;
@@ -87,6 +90,7 @@ class Beam {
   const SearchStart& start_;
   int width_;
   int branching_;
+  bool cut_ties_;
   ExplorerGuide* guide_;  // null where partial walks are ranked by penalties
   bool dropped_ = false;
   std::size_t words_;
@@ -152,28 +156,34 @@ bool Beam::expand_level(Deadline deadline) {
   return true;
 }
 
+Ranks Beam::ranks_of(double spent, double penalties) const {
+  Ranks ranks{};
+  for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i] = spent + kPenaltyShares[i] * unit_ * penalties;
+  return ranks;
+}
+
 void Beam::expand(int parent) {
   using Next = NearestFirst::Next;
   const Partial& from = level_[parent];
   const std::uint64_t* const visited = visited_of(parent);
   int branches = 0;
+  double last_cost = 0;
   nearest_.run(from.position, start_.limit() - from.spent, [&](NodeId node, double cost) {
     if (has(visited, node)) return Next::kThrough;
-    if (branches == branching_) {
+    if (branches >= branching_ && (cut_ties_ || cost > last_cost)) {
       dropped_ = true;
       return Next::kEnd;
     }
     ++branches;
+    last_cost = cost;
     const double spent = from.spent + cost;
     const double penalties = from.penalties + change_of_penalties(open_, into_, visited, node);
-    Candidate candidate{.parent = parent,
-                        .node = node,
-                        .spent = spent,
-                        .penalties = penalties,
-                        .rank = {},
-                        .hash = from.hash ^ visit_hash_[node]};
-    for (std::size_t i = 0; i < kRankCount; ++i) candidate.rank[i] = spent + kPenaltyShare[i] * unit_ * penalties;
-    add(candidate);
+    add({.parent = parent,
+         .node = node,
+         .spent = spent,
+         .penalties = penalties,
+         .ranks = ranks_of(spent, penalties),
+         .hash = from.hash ^ visit_hash_[node]});
     return Next::kPast;
   });
 }
@@ -202,12 +212,12 @@ void Beam::expand_guided(int first, int count) {
     const double penalties =
         level_[parent].penalties + change_of_penalties(open_, into_, visited_of(parent), targets_[i]);
     const double shortfall = double{shortfall_[i]} - batch_.ceiling[batch_.state[i]];
+    const Ranks plain = ranks_of(spent, penalties);
     add({.parent = parent,
          .node = targets_[i],
          .spent = spent,
          .penalties = penalties,
-         .rank = {shortfall, spent + kPenaltyShare[0] * unit_ * penalties,
-                  spent + kPenaltyShare[1] * unit_ * penalties},
+         .ranks = {shortfall, plain[0], plain[1]},
          .hash = level_[parent].hash ^ visit_hash_[targets_[i]]});
   }
 }
@@ -224,9 +234,10 @@ void Beam::add(const Candidate& candidate) {
 }
 
 void Beam::keep_best() {
+  constexpr std::size_t kRanks = kPenaltyShares.size();
   const auto by = [](std::size_t rank) {
     return [rank](const Candidate& a, const Candidate& b) {
-      if (a.rank[rank] != b.rank[rank]) return a.rank[rank] < b.rank[rank];
+      if (a.ranks[rank] != b.ranks[rank]) return a.ranks[rank] < b.ranks[rank];
       return a.parent != b.parent ? a.parent < b.parent : a.node < b.node;
     };
   };
@@ -234,8 +245,8 @@ void Beam::keep_best() {
   if (kept < candidates_.size()) {
     dropped_ = true;
     auto chosen = candidates_.begin();
-    for (std::size_t rank = 0; rank < kRankCount; ++rank) {
-      const std::size_t up_to = (kept * (rank + 1) + kRankCount - 1) / kRankCount;
+    for (std::size_t rank = 0; rank < kRanks; ++rank) {
+      const std::size_t up_to = (kept * (rank + 1) + kRanks - 1) / kRanks;
       const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(up_to);
       if (chosen < end) std::nth_element(chosen, end, candidates_.end(), by(rank));
       chosen = end;
@@ -267,20 +278,24 @@ std::vector<NodeId> Beam::unroll(std::int64_t trail) const {
   return walk_through(start_, order);
 }
 
-// The most memory a beam can come to need: every level's chain of first visits, and two levels of partial walks with
-// some candidates each.
-double bytes_needed(const World& world, int width) {
-  const double levels = world.valid_count();
-  return width * (levels * sizeof(Link) + 2 * (levels / 8 + sizeof(Partial)) + 8 * sizeof(Candidate));
+// The most memory a beam can come to need, ties at the last branch aside: every level's chain of first visits, two
+// levels of partial walks, and candidates of each.
+double bytes_needed(const World& world, const BeamOptions& options, bool guided) {
+  constexpr double kCandidateBytes = sizeof(Candidate) + 48;  // and its place in best_of_state_
+  const double nodes = world.valid_count();
+  const double branches =
+      std::min<double>(guided ? std::max(options.branching, kExplorerScope) : options.branching, nodes);
+  return options.width * (nodes * sizeof(Link) + 2 * (nodes / 8 + sizeof(Partial)) + branches * kCandidateBytes);
 }
 
 }  // namespace
 
 std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline,
                               ExplorerGuide* guide) {
-  if (bytes_needed(*start.world, options.width) > kMaxBeamBytes) {
+  const double bytes = bytes_needed(*start.world, options, guide != nullptr);
+  if (bytes > kMaxBeamBytes) {
     throw Error({.what = "the beam is too wide for this world",
-                 .expected = fmt::format("a width up to {:.0f}", kMaxBeamBytes / bytes_needed(*start.world, 1)),
+                 .expected = fmt::format("a width up to {:.0f}", std::floor(kMaxBeamBytes / bytes * options.width)),
                  .got = fmt::format("{}", options.width),
                  .where = start.world->name()});
   }
@@ -306,12 +321,20 @@ Plan BeamPolicy::plan(const SearchStart& start) {
   std::optional<Plan> best;
   improve(start, options_, deadline, best);
   const int most = limit_ ? max_visited(start) : 0;
+  const auto fits = [&](const BeamOptions& options) {
+    return options.width <= kMaxBeamWidth && bytes_needed(*start.world, options, guide_.has_value()) <= kMaxBeamBytes;
+  };
+  // Each of the two grows as long as there is room.
   for (BeamOptions wider = options_; limit_;) {
+    const BeamOptions before = wider;
+    wider.branching = std::min(wider.branching, start.world->valid_count()) * 2;
+    if (!fits(wider)) wider.branching = before.branching;
     wider.width *= 2;
-    wider.branching = std::min(2 * wider.branching, start.world->valid_count());
+    if (!fits(wider)) wider.width = before.width;
+    const bool grows = wider.width > before.width ||
+                       (wider.branching > before.branching && before.branching < start.world->valid_count());
     best->optimal = best->optimal || visited_after(start, best->walk) >= most;
-    const bool too_wide = wider.width > kMaxBeamWidth || bytes_needed(*start.world, wider.width) > kMaxBeamBytes;
-    if (best->optimal || too_wide || !improve(start, wider, deadline, best)) break;
+    if (best->optimal || !grows || !improve(start, wider, deadline, best)) break;
   }
   return *std::move(best);
 }

@@ -9,9 +9,9 @@
 namespace graphdrl {
 namespace {
 
-// Nodes for a mean edge's cost, and nodes, where all work is out of scope. Chosen on the validation split.
-constexpr double kWorthOfBudget = 0.5;
-constexpr double kIndifference = 0.4;
+// Of the rule of choose(), both in nodes; chosen on the validation split.
+constexpr double kWorthOfBudget = 0.5;  // of a mean edge's cost, to spend on work out of scope
+constexpr double kIndifference = 0.4;   // by which the nearest may fall behind, all work being out of scope
 
 }  // namespace
 
@@ -39,23 +39,20 @@ void ExplorerGuide::score(const ExplorerBatch& batch, std::vector<float>& shortf
 }
 
 std::size_t ExplorerGuide::choose(const World& world, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
-  score(batch, shortfall_);
+  score(batch, score_);
   const double unseen = batch.unseen[0];
   const double unit = world.open().mean_cost();
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    shortfall_[i] += static_cast<float>(kWorthOfBudget * unseen * visits[i].cost / unit);
+    score_[i] += static_cast<float>(kWorthOfBudget * unseen * visits[i].cost / unit);
   }
-  const float least = *std::min_element(shortfall_.begin(), shortfall_.end());
-  const auto good_enough = [&](float value) { return value <= least + kIndifference * unseen * unseen; };
-  return static_cast<std::size_t>(std::find_if(shortfall_.begin(), shortfall_.end(), good_enough) - shortfall_.begin());
+  const double most = *std::min_element(score_.begin(), score_.end()) + kIndifference * unseen * unseen;
+  return static_cast<std::size_t>(
+      std::find_if(score_.begin(), score_.end(), [&](float score) { return score <= most; }) - score_.begin());
 }
 
 Plan ExplorerPolicy::plan(const SearchStart& start) {
   ExplorerEncoder& encoder = guide_.encoder_for(*start.world);
-  std::vector<std::uint64_t> visited((start.visited.size() + 63) / 64);
-  for (std::size_t node = 0; node < start.visited.size(); ++node) {
-    if (start.visited[node]) visited[node / 64] |= std::uint64_t{1} << (node % 64);
-  }
+  std::vector<std::uint64_t> visited = bits_of(start.visited);
   ExplorerState state{.visited = visited.data(), .position = start.position, .spendable = start.limit()};
   ExplorerBatch batch;
   std::vector<NodeId> first_visits;

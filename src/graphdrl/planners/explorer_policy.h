@@ -37,16 +37,16 @@ class ExplorerGuide {
   // Throws Error where the network's weights are so large that it gives no number.
   void score(const ExplorerBatch& batch, std::vector<float>& shortfall);
 
-  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. Where all the
-  // work is in scope, the one of the least shortfall. Out of scope the network knows nothing of what budget and order
-  // are worth: the larger the part of the work there, the more does the cost of a first visit count beside its
-  // shortfall, and the farther may the nearest fall behind the best and still be taken.
+  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. With a share u of
+  // the work out of scope: the nearest whose score is within 0.4 u² of the least, a score being the shortfall plus 0.5
+  // u for every mean edge of the first visit's cost. The one of the least shortfall where all the work is in scope. In
+  // worlds much larger than the scope this visits several points more than the shortfall alone (docs/explorer.md).
   std::size_t choose(const World& world, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
 
  private:
   SharedExplorer parameters_;
   ExplorerNetwork network_;
-  std::vector<float> shortfall_;
+  std::vector<float> score_;  // of choose()
   std::map<const World*, ExplorerEncoder> encoders_;
 };
 

@@ -26,6 +26,7 @@ void validate(const ExplorerOptions& options) {
 std::vector<WorldSpec> training_worlds(const ExplorerOptions& options) {
   const int largest = static_cast<int>(options.largest);
   std::vector<WorldSpec> worlds;
+  // Most are small: there the beam's values are nearly exact, and several lessons cost as much as one of a large world.
   for (const int side : {4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 20}) {
     if (side > largest) break;
     for (int copy = 0; copy < (side == 5 ? 5 : 1); ++copy) worlds.push_back({"obstacles", side});
@@ -41,7 +42,7 @@ std::vector<WorldSpec> training_worlds(const ExplorerOptions& options) {
       worlds.push_back({family, nodes});
       worlds.push_back({family, nodes, /*weighted=*/true});
       if (family == std::string("tree")) continue;  // one way only, a tree is soon left for good
-      if (nodes > 77) continue;
+      if (nodes > 77) continue;                     // the larger, the more of it is lost after a few steps
       worlds.push_back({family, nodes, /*weighted=*/false, /*directed=*/true});
       if (nodes <= 33) worlds.push_back({family, nodes, /*weighted=*/true, /*directed=*/true});
     }

@@ -36,7 +36,7 @@ void for_each_explorer_field(Options& options, Field&& field) {
         "The same seed gives the same policy file, byte for byte (same build and machine; on the CPU)");
   field("rounds", options.rounds, "Rounds of walks and updates; the learning rate falls over all of them");
   field("largest", options.largest,
-        "Largest side of training grids, at most 20; graphs have up to seven times as many nodes");
+        "Largest side of training grids (4 to 11, 13, 15, 16, 20); graphs have up to seven times as many nodes");
   field("teacher", options.teacher,
         "Where values come from: search, or double_dqn, bootstrapped from the network's own");
   field("teacher_width", options.teacher_width, "Width of the beam that values a first visit");

@@ -27,7 +27,7 @@ SearchStart search_start_of(const Lesson& walk) {
 int gain_by_search(const Lesson& walk, int width) {
   const SearchStart start = search_start_of(walk);
   const auto before = std::count(start.visited.begin(), start.visited.end(), true);
-  const Plan plan = *beam_plan(start, {.width = width, .branching = kTeacherBranching});
+  const Plan plan = *beam_plan(start, {.width = width, .branching = kTeacherBranching, .cut_ties = true});
   return visited_after(start, plan.walk) - static_cast<int>(before);
 }
 
@@ -60,7 +60,7 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
               .choice = 0,
               .shortfall = {}};
   visit(walk, {start, 0});
-  if (chance(0.25)) {
+  if (chance(options.small_scope)) {
     walk.scope = options.least_scope +
                  static_cast<int>(rng.below(static_cast<std::uint32_t>(kExplorerScope - options.least_scope)));
   }

@@ -15,12 +15,13 @@ namespace graphdrl {
 struct LessonOptions {
   std::vector<WorldSpec> worlds;  // drawn from with equal chances
   int teacher_width;              // of the beam that values a first visit; 0 to value none
-  double lead;                    // chance of a walk to be led by the network, else by penalties and search
+  double lead;                    // chance of a walk to be led by the network's least shortfall, else by search
   double least_budget = 0.5;      // times valid nodes and mean cost
   double most_budget = 1.7;
-  int least_scope = 24;     // a walk in four is seen through a smaller scope than the explorer's, at least this
-  int states_per_walk = 6;  // asked for of each walk; states with a single first visit teach nothing
-  double explore = 0.15;    // chance of a random first visit on the way
+  double small_scope = 0.25;  // chance of a walk to be seen through a smaller scope than the explorer's,
+  int least_scope = 24;       // at least this
+  int states_per_walk = 6;    // asked for of each walk; states with a single first visit teach nothing
+  double explore = 0.15;      // chance of a random first visit on the way
 };
 
 inline constexpr float kUnlabelled = std::numeric_limits<float>::quiet_NaN();
