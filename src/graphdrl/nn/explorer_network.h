@@ -17,6 +17,7 @@
 namespace graphdrl {
 
 inline constexpr GatedGraphConvShape kExplorerConvShape = {kExplorerNodeFeatureCount, 32, 8};
+static_assert(kExplorerConvShape.inputs <= kExplorerConvShape.width);
 inline constexpr int kExplorerHeadInputs =
     3 * kExplorerConvShape.width + kExplorerNodeFeatureCount + kExplorerVisitFeatureCount;
 inline constexpr LinearShape kExplorerHead1 = {kExplorerHeadInputs, 64};
