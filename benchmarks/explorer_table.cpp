@@ -186,19 +186,18 @@ int print_table(const SharedExplorer& explorer, bool quick) {
   for (const WorldSpec& spec : {WorldSpec{"obstacles", 60}, {"loop-maze", 61}, {"rooms", 60}}) {
     cases.push_back(of_split(spec, 1.0, quick ? 2 : 16, 1));
   }
-  std::string header = "| worlds | nodes | budget |";
-  for (const Column& column : make_columns(explorer)) header += fmt::format(" {} |", column.name);
-  header +=
-      " bound | explorer − nearest | guided:16 − beam:16 | guided:50 − beam:1000 | ms: beam:50 | beam:1000 | explorer "
-      "| "
-      "guided:16 | guided:50 | a first visit of the explorer |\n|---|";
-  for (int i = 0; i < 19; ++i) header += "---|";
-  std::fputs((header + '\n').c_str(), stdout);
   std::erase_if(cases, [](const Case& one) { return one.name.find(only) == std::string::npos; });
   if (cases.empty()) {
     std::fprintf(stderr, "explorer_table: no world's name holds '%s'\n", std::string(only).c_str());
     return 2;
   }
+  std::string header = "| worlds | nodes | budget |";
+  for (const Column& column : make_columns(explorer)) header += fmt::format(" {} |", column.name);
+  header +=
+      " bound | explorer − nearest | guided:16 − beam:16 | guided:50 − beam:1000 | ms: beam:50 | beam:1000 | explorer "
+      "| guided:16 | guided:50 | a first visit of the explorer |\n|---|";
+  for (int i = 0; i < 19; ++i) header += "---|";
+  std::fputs((header + '\n').c_str(), stdout);
   for (const Case& one : cases) print_case(one, explorer);
   return 0;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "graphdrl/graph/search.h"
 
@@ -29,15 +28,11 @@ int visited_after(const SearchStart& start, std::span<const NodeId> walk) {
 std::vector<NodeId> walk_through(const SearchStart& start, std::span<const NodeId> first_visits) {
   std::vector<NodeId> walk = {start.position};
   std::vector<bool> visited = start.visited;
-  NearestFirst nearest(start.world->open());
   for (const NodeId target : first_visits) {
-    using Next = NearestFirst::Next;
-    nearest.run(walk.back(), std::numeric_limits<double>::infinity(), [&](NodeId node, double) {
-      if (node == target) return Next::kEnd;
-      return visited[node] ? Next::kThrough : Next::kPast;
-    });
-    const std::vector<NodeId> way = nearest.path_to(target);
-    walk.insert(walk.end(), way.begin(), way.end());
+    const std::vector<NodeId> path = path_to_nearest(
+        start.world->open(), walk.back(), [&](NodeId node) { return node == target; },
+        [&](NodeId node) { return visited[node] || node == target; });
+    walk.insert(walk.end(), path.begin(), path.end());
     visited[target] = true;
   }
   return walk;
