@@ -21,8 +21,13 @@ float near_scale(double cost) {
   return static_cast<float>(std::min(cost, kFar) / 8);
 }
 
-float log_scale(double count) {
-  return static_cast<float>(std::log1p(std::min<double>(count, kMany)) / 4);
+float log_scale(int count) {
+  static const auto table = [] {
+    std::array<float, kMany + 1> values{};
+    for (int i = 0; i <= kMany; ++i) values[i] = static_cast<float>(std::log1p(i) / 4);
+    return values;
+  }();
+  return table[std::min(count, kMany)];
 }
 
 // The share of a budget that work takes, seen from both sides of "just enough".
@@ -268,11 +273,11 @@ std::span<const FirstVisit> ExplorerEncoder::append(const ExplorerState& state, 
     });
     const BudgetView after(share * (budget - visit_cost_[row]), share * (work - 1));
     const double change = change_of_penalties(world_->open(), into_, state.visited, visit.node);
-    batch.visit_x.insert(
-        batch.visit_x.end(),
-        {near_scale(visit_cost_[row]), static_cast<float>(change / 4), log_scale(unvisited_neighbours_[row]),
-         near_scale(next_cost), after.per_work, after.slack, log_scale(work), static_cast<float>(hanging_[row]),
-         log_scale(hanging_size_[row]), near_scale(hanging_height_[row]), static_cast<float>(share)});
+    batch.visit_x.insert(batch.visit_x.end(),
+                         {near_scale(visit_cost_[row]), static_cast<float>(change / 4),
+                          log_scale(unvisited_neighbours_[row]), near_scale(next_cost), after.per_work, after.slack,
+                          log_scale(static_cast<int>(work)), static_cast<float>(hanging_[row]),
+                          log_scale(hanging_size_[row]), near_scale(hanging_height_[row]), static_cast<float>(share)});
     batch.target.push_back(number_[row]);
     batch.state.push_back(index);
   }

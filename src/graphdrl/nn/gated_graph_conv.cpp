@@ -25,23 +25,13 @@ void grow(std::vector<T>& buffer, std::size_t size) {
   if (buffer.size() < size) buffer.resize(size);
 }
 
-// out[i] = Σ_{j in N(i)} in[j], or out[i] += …, within one chunk. in, out: [nodes, columns] with rows `width` apart,
-// starting at the chunk's first node.
+// Of each graph of a chunk. in, out: [nodes, columns] with rows `width` apart, starting at the chunk's first node.
 template <typename T>
 void sum_neighbours(const GraphBatch& batch, int first_graph, int graph_count, int columns, int width, const T* in,
                     bool accumulate, T* out) {
   for (int g = first_graph; g < first_graph + graph_count; ++g) {
-    const Graph& graph = batch.graph(g);
-    const std::ptrdiff_t base = batch.first_node(g) - batch.first_node(first_graph);
-    for (NodeId node = 0; node < graph.node_count(); ++node) {
-      T* const row = out + (base + node) * width;
-      if (!accumulate) std::fill_n(row, columns, T{0});
-      for (const NodeId next : graph.neighbours(node)) {
-        const T* const from = in + (base + next) * width;
-#pragma omp simd
-        for (int i = 0; i < columns; ++i) row[i] += from[i];
-      }
-    }
+    const std::ptrdiff_t base = (batch.first_node(g) - batch.first_node(first_graph)) * std::ptrdiff_t{width};
+    sum_neighbours(batch.graph(g), columns, width, in + base, accumulate, out + base);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 // One clone of a function per instruction set, the best one picked when the program starts. Sanitizers run before that
 // choice can be made.
@@ -114,6 +115,29 @@ GRAPHDRL_INLINE void gru_backward_rows(int rows, int width, T* gates, const T* h
 }
 
 template <typename T>
+GRAPHDRL_INLINE void sum_neighbours_of_all(const Graph& graph, int columns, int width, const T* in, bool accumulate,
+                                           T* out) {
+  typedef T Block __attribute__((vector_size(64), aligned(alignof(T)), may_alias));
+  constexpr int kBlock = 64 / sizeof(T);
+  const auto block_of = [](auto* values) { return reinterpret_cast<Block*>(const_cast<T*>(values)); };
+  for (NodeId node = 0; node < graph.node_count(); ++node) {
+    const std::span<const NodeId> neighbours = graph.neighbours(node);
+    T* const to = out + static_cast<std::ptrdiff_t>(node) * width;
+    int column = 0;
+    for (; column + kBlock <= columns; column += kBlock) {
+      Block sum = accumulate ? *block_of(to + column) : Block{};
+      for (const NodeId next : neighbours) sum += *block_of(in + static_cast<std::ptrdiff_t>(next) * width + column);
+      *block_of(to + column) = sum;
+    }
+    for (; column < columns; ++column) {
+      T sum = accumulate ? to[column] : T{0};
+      for (const NodeId next : neighbours) sum += in[static_cast<std::ptrdiff_t>(next) * width + column];
+      to[column] = sum;
+    }
+  }
+}
+
+template <typename T>
 GRAPHDRL_INLINE void elu_values(T* x, std::size_t count) {
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i) x[i] = x[i] > 0 ? x[i] : exponential(x[i]) - T{1};
@@ -163,6 +187,15 @@ void gru_backward(int rows, int width, float* gates, const float* h, float* grad
 
 void gru_backward(int rows, int width, double* gates, const double* h, double* grad) {
   gru_backward_rows(rows, width, gates, h, grad);
+}
+
+GRAPHDRL_VECTOR_CLONES
+void sum_neighbours(const Graph& graph, int columns, int width, const float* in, bool accumulate, float* out) {
+  sum_neighbours_of_all(graph, columns, width, in, accumulate, out);
+}
+
+void sum_neighbours(const Graph& graph, int columns, int width, const double* in, bool accumulate, double* out) {
+  sum_neighbours_of_all(graph, columns, width, in, accumulate, out);
 }
 
 GRAPHDRL_VECTOR_CLONES

@@ -1,7 +1,9 @@
-// The elementwise loops of networks, as vector code chosen at run time (plain, AVX2, AVX-512).
+// The elementwise loops of networks and sums over neighbours, as vector code chosen at run time (plain, AVX2, AVX-512).
 #pragma once
 
 #include <cstddef>
+
+#include "graphdrl/graph/graph.h"
 
 namespace graphdrl {
 
@@ -19,6 +21,10 @@ void gru_forward(int rows, int width, const double* bias, double* gates, const d
 // grad: [rows, D], by h' in, by h through the z gate alone out.
 void gru_backward(int rows, int width, float* gates, const float* h, float* grad);
 void gru_backward(int rows, int width, double* gates, const double* h, double* grad);
+
+// out[i] = Σ_{j in N(i)} in[j], or out[i] += …; in, out: [nodes, columns] with rows `width` apart
+void sum_neighbours(const Graph& graph, int columns, int width, const float* in, bool accumulate, float* out);
+void sum_neighbours(const Graph& graph, int columns, int width, const double* in, bool accumulate, double* out);
 
 // x = x > 0 ? x : exp(x) - 1  [Clevert et al. 2015]
 void elu(float* x, std::size_t count);
