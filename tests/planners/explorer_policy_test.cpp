@@ -6,10 +6,26 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/world_families.h"
+#include "graphdrl/planners/beam.h"
 #include "support.h"
 
 namespace graphdrl {
 namespace {
+
+// Though the network is asked about 3 of the 16 partial walks of a level only.
+TEST(Explorer, GuidesABeamToMoreThanItFindsAlone) {
+  int gain = 0;
+  for (int index = 0; index < 30; ++index) {
+    const World world = split_world({"loop-maze", 11}, Split::kValidation, index);
+    ExplorerGuide guide(builtin_explorer());
+    const SearchStart start = search_start(world, world.valid_nodes()[0], 1.25 * world.valid_count());
+    const auto visited = [&](ExplorerGuide* by) {
+      return visited_after(start, beam_plan(start, {.width = 16}, {}, by)->walk);
+    };
+    gain += visited(&guide) - visited(nullptr);
+  }
+  EXPECT_GE(gain, 30);  // of some 2200 nodes
+}
 
 TEST(Explorer, RefusesWeightsThatGiveNoNumbers) {
   Rng rng(1);

@@ -21,7 +21,14 @@ constexpr std::uint64_t kHashSeed = 1;
 // everything, where what is left over costs nothing.
 constexpr std::array<double, 3> kPenaltyShares = {1, 0.25, 0};
 using Ranks = std::array<double, kPenaltyShares.size()>;  // lower is better
+constexpr double kUnscored = 1e9;                         // ranked behind all that the network scored
 constexpr int kBlockNodes = 8192;                         // of states scored at once
+
+// How many partial walks of a level the network is asked about. On loop mazes of 11×11, 50 wide, 6 of them serve as
+// well as all (docs/explorer.md).
+int scored_of(int width) {
+  return static_cast<int>(std::ceil(0.75 * std::sqrt(width)));
+}
 
 // A partial walk. Its visited nodes are a row of words in the level's memory.
 struct Partial {
@@ -58,6 +65,7 @@ class Beam {
         branching_(options.branching),
         cut_ties_(options.cut_ties),
         guide_(guide),
+        scored_(guide == nullptr ? 0 : scored_of(width_)),
         words_((static_cast<std::size_t>(open_.node_count()) + 63) / 64),
         unit_(open_.mean_cost()),
         nearest_(open_) {
@@ -78,7 +86,7 @@ class Beam {
   // The candidates of every partial walk of the level; false where the time is up.
   bool expand_level(Deadline deadline);
   void expand(int parent);
-  void expand_guided(int first, int count);
+  void expand_guided(int first, int end);
   Ranks ranks_of(double spent, double penalties) const;
   void add(const Candidate& candidate);
   void keep_best();
@@ -92,6 +100,7 @@ class Beam {
   int branching_;
   bool cut_ties_;
   ExplorerGuide* guide_;  // null where partial walks are ranked by penalties
+  int scored_;            // the first partial walks of a level, whose first visits the guide scores
   bool dropped_ = false;
   std::size_t words_;
   double unit_;
@@ -143,15 +152,15 @@ std::optional<Plan> Beam::run(Deadline deadline) {
 
 bool Beam::expand_level(Deadline deadline) {
   const int count = static_cast<int>(level_.size());
-  const int block = guide_ == nullptr ? 64 : std::max(1, kBlockNodes / std::min(world_.valid_count(), kExplorerScope));
-  for (int first = 0; first < count; first += block) {
+  const int scored = std::min(scored_, count);
+  const int block = std::max(1, kBlockNodes / std::min(world_.valid_count(), kExplorerScope));
+  for (int first = 0; first < scored; first += block) {
     if (passed(deadline)) return false;
-    const int end = std::min(first + block, count);
-    if (guide_ != nullptr) {
-      expand_guided(first, end - first);
-    } else {
-      for (int parent = first; parent < end; ++parent) expand(parent);
-    }
+    expand_guided(first, std::min(first + block, scored));
+  }
+  for (int parent = scored; parent < count; ++parent) {
+    if (parent % 64 == 0 && passed(deadline)) return false;
+    expand(parent);
   }
   return true;
 }
@@ -178,22 +187,23 @@ void Beam::expand(int parent) {
     last_cost = cost;
     const double spent = from.spent + cost;
     const double penalties = from.penalties + change_of_penalties(open_, into_, visited, node);
+    const Ranks plain = ranks_of(spent, penalties);
     add({.parent = parent,
          .node = node,
          .spent = spent,
          .penalties = penalties,
-         .ranks = ranks_of(spent, penalties),
+         .ranks = guide_ == nullptr ? plain : Ranks{kUnscored + spent, plain[0], plain[1]},
          .hash = from.hash ^ visit_hash_[node]});
     return Next::kPast;
   });
 }
 
-void Beam::expand_guided(int first, int count) {
+void Beam::expand_guided(int first, int end) {
   batch_.clear();
   targets_.clear();
   costs_.clear();
   ExplorerEncoder& encoder = guide_->encoder_for(world_);
-  for (int parent = first; parent < first + count; ++parent) {
+  for (int parent = first; parent < end; ++parent) {
     const Partial& from = level_[parent];
     const auto visits = encoder.append(
         {.visited = visited_of(parent), .position = from.position, .spendable = start_.limit() - from.spent},
@@ -222,14 +232,16 @@ void Beam::expand_guided(int first, int count) {
   }
 }
 
-// Of candidates that lead to the same state, only the cheapest stays.
+// Of candidates that lead to the same state, only the cheapest stays, with the best that is known of its future.
 void Beam::add(const Candidate& candidate) {
   const auto [known, fresh] =
       best_of_state_.try_emplace(candidate.hash ^ position_hash_[candidate.node], candidates_.size());
   if (fresh) {
     candidates_.push_back(candidate);
-  } else if (candidate.spent < candidates_[known->second].spent) {
-    candidates_[known->second] = candidate;
+  } else if (Candidate& other = candidates_[known->second]; candidate.spent < other.spent) {
+    const double promise = std::min(candidate.ranks[0], other.ranks[0]);
+    other = candidate;
+    other.ranks[0] = promise;
   }
 }
 
@@ -254,6 +266,12 @@ void Beam::keep_best() {
     candidates_.resize(kept);
   }
   std::sort(candidates_.begin(), candidates_.end(), by(0));
+  if (guide_ != nullptr) {
+    // It goes on with its own best, and looks at others that look good without it: a third of what it scores.
+    const std::ptrdiff_t scored = std::min<std::ptrdiff_t>(scored_, std::ssize(candidates_));
+    const auto others = candidates_.begin() + (scored - scored / 3);
+    std::partial_sort(others, candidates_.begin() + scored, candidates_.end(), by(1));
+  }
   next_level_.clear();
   next_visited_.resize(kept * words_);
   for (std::size_t i = 0; i < kept; ++i) {

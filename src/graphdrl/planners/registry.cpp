@@ -33,8 +33,6 @@ const std::map<std::string, Factory>& factories() {
   return table;
 }
 
-constexpr int kGuidedWidth = 16;
-
 // `beam[:W]` and `guided[:W[:FILE]]`, taken apart.
 struct BeamName {
   int width;
@@ -47,7 +45,7 @@ std::optional<BeamName> parse_beam_name(std::string_view name) {
   const std::size_t colon = std::min(name.find(':'), name.size());
   const std::string_view kind = name.substr(0, colon);
   if (kind != "beam" && kind != "guided") return std::nullopt;
-  BeamName result{.width = kind == "beam" ? BeamOptions{}.width : kGuidedWidth, .guided = kind == "guided", .file = {}};
+  BeamName result{.width = BeamOptions{}.width, .guided = kind == "guided", .file = {}};
   if (colon == name.size()) return result;
   std::string_view text = name.substr(colon + 1);
   if (const std::size_t next = text.find(':'); result.guided && next != std::string_view::npos) {
