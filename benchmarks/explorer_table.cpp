@@ -166,8 +166,6 @@ int print_table(const SharedExplorer& explorer, bool quick) {
   std::vector<Case> cases;
   const int many = quick ? 30 : 300;
   const int some = quick ? 10 : 100;
-  const int small = quick ? 10 : 400;
-  const int large = quick ? 2 : 48;
   const std::vector<World> paper = load_worlds({"paper"});
   cases.push_back({"paper:a–j", 25, 10, kAllStarts, true, true, [&](int index) { return paper[index]; }});
   cases.push_back(of_split({"obstacles", 5}, 1.1, many, kAllStarts, true, true));
@@ -181,13 +179,13 @@ int print_table(const SharedExplorer& explorer, bool quick) {
       for (const bool weighted : {false, true}) {
         for (const bool directed : {false, true}) {
           if (directed && family == std::string_view("tree")) continue;
-          cases.push_back(of_split({family, nodes, weighted, directed}, 1.0, nodes == 50 ? small : some, 1));
+          cases.push_back(of_split({family, nodes, weighted, directed}, 1.0, nodes == 50 ? 4 * some : 2 * some, 1));
         }
       }
     }
   }
   for (const WorldSpec& spec : {WorldSpec{"obstacles", 60}, {"loop-maze", 61}, {"rooms", 60}}) {
-    cases.push_back(of_split(spec, 1.0, large, 1));
+    cases.push_back(of_split(spec, 1.0, quick ? 2 : 48, 1));
   }
   std::erase_if(cases, [](const Case& one) { return one.name.find(only) == std::string::npos; });
   if (cases.empty()) {

@@ -18,6 +18,28 @@ TEST(VectorMath, EluIsExpMinusOneBelowZero) {
   }
 }
 
+TEST(VectorMath, SumsOfNeighboursAreTheFormula) {
+  const Graph graph = Graph::grid(3, 4);
+  for (const int columns : {1, 7, 16, 19, 64}) {
+    for (const bool accumulate : {false, true}) {
+      const int width = columns + 3;
+      std::vector<float> in;
+      for (int i = 0; i < graph.node_count() * width; ++i) in.push_back(static_cast<float>(i * i % 101));
+      std::vector<float> out(in.size(), 5);
+      sum_neighbours(graph, columns, width, in.data(), accumulate, out.data());
+      for (NodeId node = 0; node < graph.node_count(); ++node) {
+        for (int i = 0; i < width; ++i) {
+          float sum = accumulate || i >= columns ? 5 : 0;  // whole numbers: exact
+          if (i < columns) {
+            for (const NodeId next : graph.neighbours(node)) sum += in[next * width + i];
+          }
+          ASSERT_EQ(out[node * width + i], sum) << columns << " " << accumulate << " " << node << " " << i;
+        }
+      }
+    }
+  }
+}
+
 TEST(VectorMath, GruStepIsTheFormulas) {
   // Odd widths leave a remainder behind the vector code.
   for (const int width : {1, 7, 19, 64}) {

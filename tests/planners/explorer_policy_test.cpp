@@ -12,7 +12,6 @@
 namespace graphdrl {
 namespace {
 
-// Though the network is asked about 3 of the 16 partial walks of a level only.
 TEST(Explorer, GuidesABeamToMoreThanItFindsAlone) {
   int gain = 0;
   for (int index = 0; index < 30; ++index) {

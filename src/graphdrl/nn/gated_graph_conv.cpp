@@ -25,7 +25,8 @@ void grow(std::vector<T>& buffer, std::size_t size) {
   if (buffer.size() < size) buffer.resize(size);
 }
 
-// Of each graph of a chunk. in, out: [nodes, columns] with rows `width` apart, starting at the chunk's first node.
+// The sums within each graph of a chunk. in, out: [nodes, columns] with rows `width` apart, starting at the chunk's
+// first node.
 template <typename T>
 void sum_neighbours(const GraphBatch& batch, int first_graph, int graph_count, int columns, int width, const T* in,
                     bool accumulate, T* out) {

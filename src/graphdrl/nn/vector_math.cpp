@@ -117,6 +117,7 @@ GRAPHDRL_INLINE void gru_backward_rows(int rows, int width, T* gates, const T* h
 template <typename T>
 GRAPHDRL_INLINE void sum_neighbours_of_all(const Graph& graph, int columns, int width, const T* in, bool accumulate,
                                            T* out) {
+  // Columns whose sum stays in registers over all neighbours.
   typedef T Block __attribute__((vector_size(64), aligned(alignof(T)), may_alias));
   constexpr int kBlock = 64 / sizeof(T);
   const auto block_of = [](auto* values) { return reinterpret_cast<Block*>(const_cast<T*>(values)); };

@@ -23,6 +23,7 @@ void gru_backward(int rows, int width, float* gates, const float* h, float* grad
 void gru_backward(int rows, int width, double* gates, const double* h, double* grad);
 
 // out[i] = Σ_{j in N(i)} in[j], or out[i] += …; in, out: [nodes, columns] with rows `width` apart
+// REQUIRES: in and out do not overlap.
 void sum_neighbours(const Graph& graph, int columns, int width, const float* in, bool accumulate, float* out);
 void sum_neighbours(const Graph& graph, int columns, int width, const double* in, bool accumulate, double* out);
 

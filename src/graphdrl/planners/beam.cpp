@@ -21,12 +21,12 @@ constexpr std::uint64_t kHashSeed = 1;
 // everything, where what is left over costs nothing.
 constexpr std::array<double, 3> kPenaltyShares = {1, 0.25, 0};
 using Ranks = std::array<double, kPenaltyShares.size()>;  // lower is better
-constexpr double kUnscored = 1e9;                         // ranked behind all that the network scored
+constexpr double kUnscored = 1e9;                         // ranks first visits behind all that the network scored
 constexpr int kBlockNodes = 8192;                         // of states scored at once
 
-// How many partial walks of a level the network is asked about. On loop mazes of 11×11, 50 wide, 6 of them serve as
-// well as all (docs/explorer.md).
-int scored_of(int width) {
+// How many partial walks of a level the guide scores. Of 50, 6 serve as well as all in loop mazes (docs/explorer.md);
+// by the root, for a wide beam is there to look beyond the network.
+int scored_per_level(int width) {
   return static_cast<int>(std::ceil(0.75 * std::sqrt(width)));
 }
 
@@ -65,7 +65,7 @@ class Beam {
         branching_(options.branching),
         cut_ties_(options.cut_ties),
         guide_(guide),
-        scored_(guide == nullptr ? 0 : scored_of(width_)),
+        scored_per_level_(guide == nullptr ? 0 : scored_per_level(width_)),
         words_((static_cast<std::size_t>(open_.node_count()) + 63) / 64),
         unit_(open_.mean_cost()),
         nearest_(open_) {
@@ -100,7 +100,7 @@ class Beam {
   int branching_;
   bool cut_ties_;
   ExplorerGuide* guide_;  // null where partial walks are ranked by penalties
-  int scored_;            // the first partial walks of a level, whose first visits the guide scores
+  int scored_per_level_;  // how many, from the front of a level; the others' first visits count by their ranks
   bool dropped_ = false;
   std::size_t words_;
   double unit_;
@@ -152,7 +152,7 @@ std::optional<Plan> Beam::run(Deadline deadline) {
 
 bool Beam::expand_level(Deadline deadline) {
   const int count = static_cast<int>(level_.size());
-  const int scored = std::min(scored_, count);
+  const int scored = std::min(scored_per_level_, count);
   const int block = std::max(1, kBlockNodes / std::min(world_.valid_count(), kExplorerScope));
   for (int first = 0; first < scored; first += block) {
     if (passed(deadline)) return false;
@@ -192,7 +192,7 @@ void Beam::expand(int parent) {
          .node = node,
          .spent = spent,
          .penalties = penalties,
-         .ranks = guide_ == nullptr ? plain : Ranks{kUnscored + spent, plain[0], plain[1]},
+         .ranks = guide_ == nullptr ? plain : Ranks{kUnscored + spent / unit_, plain[0], plain[1]},
          .hash = from.hash ^ visit_hash_[node]});
     return Next::kPast;
   });
@@ -232,17 +232,19 @@ void Beam::expand_guided(int first, int end) {
   }
 }
 
-// Of candidates that lead to the same state, only the cheapest stays, with the best that is known of its future.
+// Of candidates that lead to the same state, only the cheapest stays; what the guide says of a dearer one holds for it
+// at least.
 void Beam::add(const Candidate& candidate) {
   const auto [known, fresh] =
       best_of_state_.try_emplace(candidate.hash ^ position_hash_[candidate.node], candidates_.size());
   if (fresh) {
     candidates_.push_back(candidate);
-  } else if (Candidate& other = candidates_[known->second]; candidate.spent < other.spent) {
-    const double promise = std::min(candidate.ranks[0], other.ranks[0]);
-    other = candidate;
-    other.ranks[0] = promise;
+    return;
   }
+  Candidate& other = candidates_[known->second];
+  const double promise = std::min(candidate.ranks[0], other.ranks[0]);
+  if (candidate.spent < other.spent) other = candidate;
+  other.ranks[0] = promise;
 }
 
 void Beam::keep_best() {
@@ -267,10 +269,10 @@ void Beam::keep_best() {
   }
   std::sort(candidates_.begin(), candidates_.end(), by(0));
   if (guide_ != nullptr) {
-    // It goes on with its own best, and looks at others that look good without it: a third of what it scores.
-    const std::ptrdiff_t scored = std::min<std::ptrdiff_t>(scored_, std::ssize(candidates_));
-    const auto others = candidates_.begin() + (scored - scored / 3);
-    std::partial_sort(others, candidates_.begin() + scored, candidates_.end(), by(1));
+    // To the front of the level, for the guide: its own best, then others that look good without it.
+    const int others = scored_per_level_ / 3;
+    const std::ptrdiff_t own = std::min<std::ptrdiff_t>(scored_per_level_ - others, std::ssize(candidates_));
+    std::sort(candidates_.begin() + own, candidates_.end(), by(1));
   }
   next_level_.clear();
   next_visited_.resize(kept * words_);
@@ -297,7 +299,7 @@ std::vector<NodeId> Beam::unroll(std::int64_t trail) const {
 }
 
 // The most memory a beam can come to need, ties at the last branch aside: every level's chain of first visits, two
-// levels of partial walks, and candidates of each.
+// levels of partial walks, and candidates of each; of a guided beam, as if all were scored.
 double bytes_needed(const World& world, const BeamOptions& options, bool guided) {
   constexpr double kCandidateBytes = sizeof(Candidate) + 48;  // and its place in best_of_state_
   const double nodes = world.valid_count();

@@ -18,10 +18,10 @@ inline constexpr double kMaxBeamBytes = 4e9;
 
 // The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. A level is
 // kept by three measures in equal parts: what was spent and all, a quarter or none of the penalties for what is left
-// over; with a guide, what the network says will be visited in the end, then the first two of those. The network is
-// asked about ¾ √width partial walks of a level, two thirds of them its own best and the others the best by all
-// penalties: as good as asking about all, in a fraction of the time (docs/explorer.md). A width of one keeps by the
-// first measure only. Optimal where no partial walk had to be dropped and no first visit was left out.
+// over. A guide's word on how many nodes will be visited in the end replaces the last of them; it scores the first
+// visits of ¾ √width partial walks of a level, a third of those the best by all penalties and the others its own best.
+// First visits that it did not score come behind in its measure, the cheapest first. A width of one keeps by the first
+// measure only. Optimal where no partial walk had to be dropped and no first visit was left out.
 // Deterministic. Empty where the deadline passes first. Throws Error where the beam would need more than kMaxBeamBytes.
 // REQUIRES: width and branching of at least 1.
 std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline = {},
@@ -34,8 +34,7 @@ class BeamPolicy final : public PlanPolicy {
  public:
   explicit BeamPolicy(BeamOptions options, TimeLimit limit = {}) : options_(options), limit_(limit) {}
 
-  // Guided: at every width a beam without the guide is searched first, at a small part of the cost; the better walk
-  // counts.
+  // Guided: at every width a beam without the guide is searched first; the better walk counts.
   BeamPolicy(BeamOptions options, SharedExplorer guide, TimeLimit limit = {})
       : options_(options), limit_(limit), guide_(std::in_place, std::move(guide)) {}
 
