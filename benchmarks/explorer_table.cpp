@@ -148,7 +148,7 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
     line += fmt::format(" {} |", column.coverage.empty() ? "" : with_interval(column.coverage));
   }
   line +=
-      fmt::format(" {:.1f}{} | {} | {} | {} |", summarise(bounds).mean, one.solved ? " (optimum)" : "",
+      fmt::format(" {:.1f}{} | {} | {} | {} | {} |", summarise(bounds).mean, one.solved ? " (optimum)" : "",
                   difference(columns[kExplorer], columns[kNearest]), difference(columns[kGuided16], columns[kBeam16]),
                   difference(columns[kGuided50], columns[kBeam50]), difference(columns[kGuided50], columns[kBeam1000]));
   for (const int column : {kBeam50, kBeam1000, kExplorer, kGuided16, kGuided50}) {
