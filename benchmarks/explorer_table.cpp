@@ -170,10 +170,11 @@ int print_table(const SharedExplorer& explorer, bool quick) {
   cases.push_back({"paper:a–j", 25, 10, kAllStarts, true, true, [&](int index) { return paper[index]; }});
   cases.push_back(of_split({"obstacles", 5}, 1.1, many, kAllStarts, true, true));
   cases.push_back(of_split({"loop-maze", 11}, 1.0, some, 1, true));
-  cases.push_back(of_split({"loop-maze", 11}, 1.25, some, 1, true));
+  for (const double budget : {1.25, 1.5, 2.0}) cases.push_back(of_split({"loop-maze", 11}, budget, some, 1, true));
   for (const char* const family : {"maze", "braided-maze", "rooms", "obstacles"}) {
     cases.push_back(of_split({family, 11}, 1.0, some, 1, true));
   }
+  for (const double budget : {1.5, 2.0}) cases.push_back(of_split({"obstacles", 11}, budget, some, 1, true));
   for (const char* const family : {"tree", "erdos-renyi", "barabasi-albert", "watts-strogatz", "geometric"}) {
     for (const int nodes : {50, 200}) {
       for (const bool weighted : {false, true}) {

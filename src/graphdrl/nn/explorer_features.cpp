@@ -45,7 +45,7 @@ void ExplorerBatch::clear() {
   graphs.clear();
   for (auto* values : {&node_x, &visit_x}) values->clear();
   for (auto* values : {&current, &target, &state}) values->clear();
-  for (auto* values : {&ceiling, &unseen}) values->clear();
+  for (auto* values : {&ceiling, &unseen, &budget_per_work}) values->clear();
   parts.clear();
 }
 
@@ -284,6 +284,7 @@ std::span<const FirstVisit> ExplorerEncoder::append(const ExplorerState& state, 
   batch.current.push_back(number_[row_of_[state.position]]);
   batch.ceiling.push_back(std::min(work, budget));
   batch.unseen.push_back(1 - share);
+  batch.budget_per_work.push_back(budget / std::max(work, 1.0));
   for (const NodeId row : seen) number_[row] = kNoNode;
   return visits_;
 }

@@ -82,7 +82,8 @@ struct ExplorerBatch {
   std::vector<int> state;       // [C], the state it belongs to; visits of a state stand together
   std::vector<double> ceiling;  // [B], about what a walk can still visit: nodes in reach, or what the budget pays for
   std::vector<double> unseen;   // [B], the share of the unvisited nodes in reach that is out of scope
-  std::deque<Graph> parts;      // of worlds, which `graphs` points to
+  std::vector<double> budget_per_work;  // [B], mean edges left to spend for each unvisited node in reach
+  std::deque<Graph> parts;              // of worlds, which `graphs` points to
 
   void clear();
   int visit_count() const { return static_cast<int>(target.size()); }  // C

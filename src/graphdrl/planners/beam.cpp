@@ -332,8 +332,11 @@ bool BeamPolicy::improve(const SearchStart& start, const BeamOptions& options, D
     return true;
   };
   // The very first search is finished whatever it takes, so that there is a walk.
-  if (!take(beam_plan(start, options, best ? deadline : Deadline()))) return false;
-  return !guide_ || best->optimal || take(beam_plan(start, options, deadline, &*guide_));
+  const bool first = !best;
+  if (!take(beam_plan(start, options, first ? Deadline() : deadline))) return false;
+  if (!guide_ || best->optimal) return true;
+  if (first && limit_) take(explorer_plan(start, *guide_, deadline));
+  return take(beam_plan(start, options, deadline, &*guide_));
 }
 
 Plan BeamPolicy::plan(const SearchStart& start) {

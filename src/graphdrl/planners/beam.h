@@ -29,7 +29,7 @@ std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& optio
 
 // With a time limit, searches again and again with twice the width and branching, until the time is up, a walk is known
 // to be optimal or memory would run short; the best walk counts. The first search without a guide, of the width given,
-// is always finished.
+// is always finished; with a guide, the explorer's own walk is tried next.
 class BeamPolicy final : public PlanPolicy {
  public:
   explicit BeamPolicy(BeamOptions options, TimeLimit limit = {}) : options_(options), limit_(limit) {}

@@ -37,10 +37,12 @@ class ExplorerGuide {
   // Throws Error where the network's weights are so large that it gives no number.
   void score(const ExplorerBatch& batch, std::vector<float>& shortfall);
 
-  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. With a share u of
-  // the work out of scope: the nearest whose score is within 0.4 u² of the least, a score being the shortfall plus 0.5
-  // u for every mean edge of the first visit's cost. The one of the least shortfall where all the work is in scope. In
-  // worlds much larger than the scope this visits several points more than the shortfall alone (docs/explorer.md).
+  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. A score is the
+  // shortfall, and for every mean edge of the first visit's cost 0.5 u nodes, with a share u of the work out of scope,
+  // and 0.1 (b - 1.2) nodes, 0 to 1, with b mean edges left for each unvisited node. The nearest whose score is within
+  // 0.4 u² of the least: the one of the least shortfall where all the work is in scope and the budget is short. In
+  // worlds much larger than the scope, and with budget to spare, which the network would waste, this visits several
+  // points more than the shortfall alone (docs/explorer.md).
   std::size_t choose(const World& world, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
 
  private:
@@ -50,12 +52,15 @@ class ExplorerGuide {
   std::map<const World*, ExplorerEncoder> encoders_;
 };
 
-// The explorer alone: one first visit after the other, each as ExplorerGuide::choose says.
+// One first visit after the other, each as ExplorerGuide::choose says, to the end or until the deadline passes.
+Plan explorer_plan(const SearchStart& start, ExplorerGuide& guide, Deadline deadline = {});
+
+// The explorer alone.
 class ExplorerPolicy final : public PlanPolicy {
  public:
   explicit ExplorerPolicy(SharedExplorer parameters) : guide_(std::move(parameters)) {}
 
-  Plan plan(const SearchStart& start) override;
+  Plan plan(const SearchStart& start) override { return explorer_plan(start, guide_); }
 
  private:
   ExplorerGuide guide_;
