@@ -221,8 +221,8 @@ int main(int argc, char** argv) {
       split_shown = Split::kValidation;
     } else if (argument == "--only" && i + 1 < argc) {
       only = argv[++i];
-    } else if (argument == "--threads" && i + 1 < argc) {
-      set_threads(std::max(1, std::atoi(argv[++i])));
+    } else if (argument == "--threads" && i + 1 < argc && std::atoi(argv[i + 1]) > 0) {
+      set_threads(std::atoi(argv[++i]));
     } else if (argument == "--policy" && i + 1 < argc) {
       explorer = read_explorer_file(argv[++i]);
     } else {

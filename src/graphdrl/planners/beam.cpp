@@ -100,7 +100,7 @@ class Beam {
   int branching_;
   bool cut_ties_;
   ExplorerGuide* guide_;  // null where partial walks are ranked by penalties
-  int scored_per_level_;  // how many, from the front of a level; the others' first visits count by their ranks
+  int scored_per_level_;  // partial walks that the guide scores, from the front of a level; 0 without one
   bool dropped_ = false;
   std::size_t words_;
   double unit_;

@@ -19,9 +19,9 @@ inline constexpr double kMaxBeamBytes = 4e9;
 // The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. A level is
 // kept by three measures in equal parts: what was spent and all, a quarter or none of the penalties for what is left
 // over. A guide's word on how many nodes will be visited in the end replaces the last of them; it scores the first
-// visits of ¾ √width partial walks of a level, a third of those the best by all penalties and the others its own best.
-// First visits that it did not score come behind in its measure, the cheapest first. A width of one keeps by the first
-// measure only. Optimal where no partial walk had to be dropped and no first visit was left out.
+// visits of ⌈¾ √width⌉ partial walks of a level, a third of those the best by all penalties and the others its own
+// best. First visits that it did not score come behind in its measure, the cheapest first. A width of one keeps by the
+// first measure only. Optimal where no partial walk had to be dropped and no first visit was left out.
 // Deterministic. Empty where the deadline passes first. Throws Error where the beam would need more than kMaxBeamBytes.
 // REQUIRES: width and branching of at least 1.
 std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline = {},
