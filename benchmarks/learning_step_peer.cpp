@@ -8,8 +8,8 @@
 
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/nn/features.h"
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/nn/paper_features.h"
+#include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/kernel_learner.h"
 
 namespace graphdrl {
@@ -33,7 +33,7 @@ ReplayBuffer random_replay(const World& world, Rng& rng) {
 }
 
 // Every transition of the replay buffer, encoded, in its order.
-Minibatch whole_replay(const ReplayBuffer& replay, const FeatureEncoder& encoder) {
+Minibatch whole_replay(const ReplayBuffer& replay, const PaperFeatureEncoder& encoder) {
   Minibatch all;
   all.clear();
   for (std::size_t i = 0; i < replay.size(); ++i) append_transition(replay, i, encoder, all);
@@ -43,7 +43,7 @@ Minibatch whole_replay(const ReplayBuffer& replay, const FeatureEncoder& encoder
 int serve(const std::string& file, int threads) {
   Rng rng(7);
   const World world = load_one_world("paper:a");
-  const std::vector<FeatureEncoder> encoders = {FeatureEncoder(world)};
+  const std::vector<PaperFeatureEncoder> encoders = {PaperFeatureEncoder(world)};
   const ReplayBuffer replay = random_replay(world, rng);
   KernelLearner learner({}, rng);
   Minibatch batch;  // the first transitions, for the losses to agree on
@@ -56,7 +56,7 @@ int serve(const std::string& file, int threads) {
   std::vector<TensorView> tensors = weights.views();
   const Minibatch all = whole_replay(replay, encoders.front());
   const auto size = static_cast<std::int64_t>(all.actions.size());
-  const Shape states = {size, world.graph().node_count(), kFeatureCount};
+  const Shape states = {size, world.graph().node_count(), kPaperFeatureCount};
   tensors.emplace_back("x", states, std::span<const float>(all.x));
   tensors.emplace_back("next_x", states, std::span<const float>(all.next_x));
   tensors.emplace_back("actions", Shape{size}, std::span<const std::int64_t>(all.actions));
@@ -65,7 +65,7 @@ int serve(const std::string& file, int threads) {
   tensors.emplace_back("loss", Shape{1}, std::span<const double>(loss));
   write_safetensors(file, tensors, {});
 
-  NetworkPolicy policy(weights);
+  PaperPolicy policy(weights);
   Episode episode(world, {});
   episode.reset(0);
   const Observation observation = episode.observation();

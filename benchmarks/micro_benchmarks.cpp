@@ -11,9 +11,9 @@
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/graph/grid_map.h"
-#include "graphdrl/nn/features.h"
 #include "graphdrl/nn/gemm.h"
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/nn/paper_features.h"
+#include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/composed_network.h"
 #include "graphdrl/train/device_learner.h"
 #include "graphdrl/train/kernel_learner.h"
@@ -80,7 +80,7 @@ struct LearningCase {
       batch.rewards.push_back(static_cast<float>(rng.uniform()));
       batch.terminal.push_back(0);
     }
-    const std::size_t values = static_cast<std::size_t>(batch.graphs.node_count()) * kFeatureCount;
+    const std::size_t values = static_cast<std::size_t>(batch.graphs.node_count()) * kPaperFeatureCount;
     batch.x = random_values(values, rng);
     batch.next_x = random_values(values, rng);
   }
@@ -135,7 +135,8 @@ void BM_QValuesByNodes(benchmark::State& state) {
   for (auto _ : state) network.q_values(work.batch.graphs, work.batch.x, q);
   const torch::Tensor values = torch::from_blob(const_cast<float*>(parameters.values().data()),
                                                 {static_cast<std::int64_t>(parameters.values().size())});
-  const torch::Tensor x = torch::from_blob(const_cast<float*>(work.batch.x.data()), {state.range(0), kFeatureCount});
+  const torch::Tensor x =
+      torch::from_blob(const_cast<float*>(work.batch.x.data()), {state.range(0), kPaperFeatureCount});
   const torch::Tensor expected =
       composed_q_values(edge_index(work.batch.graphs, torch::kCPU), x, named_tensors(values));
   for (int a = 0; a < kActionCount; ++a) {
@@ -149,7 +150,7 @@ BENCHMARK(BM_QValuesByNodes)->ArgName("nodes")->ArgsProduct({{25, 50, 100, 200, 
 void BM_MovesByEpisodes(benchmark::State& state) {
   const World world = load_one_world("paper:a");
   Rng rng(6);
-  NetworkPolicy policy{PaperParameters(rng)};
+  PaperPolicy policy{PaperParameters(rng)};
   std::vector<Episode> episodes(static_cast<std::size_t>(state.range(0)), Episode(world, {}));
   for (Episode& episode : episodes) {
     episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
@@ -175,10 +176,10 @@ BENCHMARK(BM_MovesByEpisodes)->ArgName("episodes")->ArgsProduct({{1, 4, 16, 64, 
 void BM_StepsByNodes(benchmark::State& state) {
   const int side = static_cast<int>(std::lround(std::sqrt(state.range(0))));
   const World world("case", GridMap{.rows = side, .cols = side, .blocked = std::vector<bool>(side * side)});
-  const FeatureEncoder encoder(world);
+  const PaperFeatureEncoder encoder(world);
   Episode episode(world, {.budget = 1e9});
   episode.reset(0);
-  std::vector<float> features(static_cast<std::size_t>(side) * side * kFeatureCount);
+  std::vector<float> features(static_cast<std::size_t>(side) * side * kPaperFeatureCount);
   encoder.begin(0, features);
   Rng rng(5);
   std::int64_t steps = 0;

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "graphdrl/io/file.h"
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -68,7 +68,7 @@ TEST(PaperNetwork, GivesABatchWhatItGivesEachGraphAlone) {
     GraphBatch single;
     single.add(graph);
     std::vector<float> own;
-    for (int i = 0; i < graph.node_count() * kFeatureCount; ++i) own.push_back(static_cast<float>(rng.below(5)));
+    for (int i = 0; i < graph.node_count() * kPaperFeatureCount; ++i) own.push_back(static_cast<float>(rng.below(5)));
     std::array<float, 4> q{};
     network.q_values(single, own, q);
     expected.insert(expected.end(), q.begin(), q.end());

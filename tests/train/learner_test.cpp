@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "graphdrl/env/episode.h"
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/train/device_learner.h"
 #include "graphdrl/train/td_target.h"
 #include "support.h"
@@ -40,7 +40,7 @@ TEST(KeepScale, DropsItsShareAndKeepsTheMean) {
 // A map of four nodes.
 struct TinyWorld {
   World world = grid_world("..\n..\n");
-  FeatureEncoder encoder{world};
+  PaperFeatureEncoder encoder{world};
 };
 
 // Adds the transition of `action` after `actions` from node 0.
@@ -50,8 +50,8 @@ void add_transition(const TinyWorld& tiny, const std::vector<int>& actions, int 
   for (const int past : actions) episode.step(past);
   const std::size_t row = batch.x.size();
   batch.graphs.add(tiny.world.graph());
-  batch.x.resize(row + 4 * kFeatureCount);
-  batch.next_x.resize(row + 4 * kFeatureCount);
+  batch.x.resize(row + 4 * kPaperFeatureCount);
+  batch.next_x.resize(row + 4 * kPaperFeatureCount);
   tiny.encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.x).subspan(row));
   const StepResult step = episode.step(action);
   tiny.encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.next_x).subspan(row));

@@ -6,7 +6,7 @@
 
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/train/kernel_learner.h"
 
 namespace graphdrl {
@@ -44,12 +44,12 @@ int write_probe(const std::string& out, bool double_dqn) {
   std::vector<std::int64_t> first_nodes = {0};
   for (int i = 0; i < 32; ++i) {
     const World& world = worlds[static_cast<std::size_t>(i) % worlds.size()];
-    const FeatureEncoder encoder(world);
+    const PaperFeatureEncoder encoder(world);
     Episode episode(world, {.budget = 40, .end_at_full_coverage = true});
     episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
     for (std::uint32_t steps = rng.below(25); steps > 0; --steps) episode.step(static_cast<int>(rng.below(4)));
     const std::size_t row = batch.x.size();
-    const std::size_t size = episode.visits().size() * kFeatureCount;
+    const std::size_t size = episode.visits().size() * kPaperFeatureCount;
     batch.x.resize(row + size);
     batch.next_x.resize(row + size);
     encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.x).subspan(row));
@@ -85,8 +85,8 @@ int write_probe(const std::string& out, bool double_dqn) {
   const auto add = [&]<typename T>(const char* name, Shape shape, const std::vector<T>& values) {
     tensors.emplace_back(name, std::move(shape), std::span<const T>(values));
   };
-  add("x", {n, kFeatureCount}, batch.x);
-  add("next_x", {n, kFeatureCount}, batch.next_x);
+  add("x", {n, kPaperFeatureCount}, batch.x);
+  add("next_x", {n, kPaperFeatureCount}, batch.next_x);
   add("edges.from", {e}, edges.from);
   add("edges.to", {e}, edges.to);
   add("first_nodes", {b + 1}, first_nodes);

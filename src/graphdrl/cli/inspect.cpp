@@ -9,7 +9,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
 #include "graphdrl/planners/explorer_policy.h"
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/planners/paper_policy.h"
 
 namespace graphdrl {
 namespace {
@@ -31,13 +31,13 @@ struct InspectedStep {
   std::array<bool, kActionCount> legal;  // false where the move would be blocked
 };
 
-std::vector<InspectedStep> inspect_walk(NetworkPolicy& policy, const InspectOptions& options) {
+std::vector<InspectedStep> inspect_walk(PaperPolicy& policy, const InspectOptions& options) {
   const World world = load_one_world(options.map);
   Episode episode(world, {.budget = static_cast<double>(options.walk.size())});
   std::vector<InspectedStep> steps;
   follow_walk(episode, options.walk, [&](const Observation& observation) {
     InspectedStep step{.position = observation.position, .features = {}, .q = {}, .legal = {}};
-    step.features.resize(static_cast<std::size_t>(world.graph().node_count()) * kFeatureCount);
+    step.features.resize(static_cast<std::size_t>(world.graph().node_count()) * kPaperFeatureCount);
     policy.encoder_for(world).encode(observation.position, observation.visits, std::span(step.features));
     policy.q_values({&observation, 1}, step.q);
     for (int action = 0; action < kActionCount; ++action) {
@@ -52,8 +52,8 @@ Json to_json(const std::vector<InspectedStep>& steps) {
   Json json = Json::array();
   for (const InspectedStep& step : steps) {
     Json features = Json::array();
-    for (std::size_t row = 0; row < step.features.size(); row += kFeatureCount) {
-      features.push_back(std::vector(&step.features[row], &step.features[row] + kFeatureCount));
+    for (std::size_t row = 0; row < step.features.size(); row += kPaperFeatureCount) {
+      features.push_back(std::vector(&step.features[row], &step.features[row] + kPaperFeatureCount));
     }
     json.push_back({{"position", step.position}, {"features", features}, {"q", step.q}, {"legal", step.legal}});
   }
@@ -165,12 +165,12 @@ std::string format_steps(const std::vector<InspectedStep>& steps) {
                           step.legal[action] ? "" : " (blocked)");
     }
     text += "\n  node";
-    for (const std::string_view name : kFeatureNames) text += fmt::format("  {}", name);
+    for (const std::string_view name : kPaperFeatureNames) text += fmt::format("  {}", name);
     text += '\n';
-    for (std::size_t row = 0; row < step.features.size(); row += kFeatureCount) {
-      text += fmt::format("  {:4}", row / kFeatureCount);
-      for (int f = 0; f < kFeatureCount; ++f) {
-        text += fmt::format("  {:>{}g}", step.features[row + f], kFeatureNames[f].size());
+    for (std::size_t row = 0; row < step.features.size(); row += kPaperFeatureCount) {
+      text += fmt::format("  {:4}", row / kPaperFeatureCount);
+      for (int f = 0; f < kPaperFeatureCount; ++f) {
+        text += fmt::format("  {:>{}g}", step.features[row + f], kPaperFeatureNames[f].size());
       }
       text += '\n';
     }
@@ -209,7 +209,7 @@ void inspect(const InspectOptions& options) {
   if (options.budget_given) {
     throw Error({.what = "the paper's network looks at no budget", .where = "--budget"});
   }
-  NetworkPolicy policy(read_policy_file(options.policy));
+  PaperPolicy policy(read_policy_file(options.policy));
   print(PaperParameters::specs(), options.walk.empty() ? std::vector<InspectedStep>() : inspect_walk(policy, options),
         options);
 }

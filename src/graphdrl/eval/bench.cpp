@@ -9,8 +9,8 @@
 #include "graphdrl/env/vector_env.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/eval/statistics.h"
-#include "graphdrl/nn/features.h"
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/nn/paper_features.h"
+#include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
@@ -46,7 +46,7 @@ struct Runner {
   std::int64_t tenths = 0;      // sum of rewards, in tenths: an integer
 };
 
-void reset(const World& world, const FeatureEncoder& encoder, Runner& runner, Episode& episode) {
+void reset(const World& world, const PaperFeatureEncoder& encoder, Runner& runner, Episode& episode) {
   const NodeId start = world.valid_nodes()[runner.rng.below(static_cast<std::uint32_t>(world.valid_count()))];
   episode.reset(start);
   encoder.begin(start, runner.features);
@@ -56,12 +56,12 @@ void reset(const World& world, const FeatureEncoder& encoder, Runner& runner, Ep
 
 EnvironmentBench bench_environment() {
   const World world = load_one_world("paper:a");
-  const FeatureEncoder encoder(world);
+  const PaperFeatureEncoder encoder(world);
   VectorEnv env(world, {}, kEpisodes);
   std::vector<Runner> runners;
   for (int i = 0; i < kEpisodes; ++i) {
     runners.emplace_back(derive_seed(1, 0, static_cast<std::uint64_t>(i)));
-    runners.back().features.resize(static_cast<std::size_t>(world.graph().node_count()) * kFeatureCount);
+    runners.back().features.resize(static_cast<std::size_t>(world.graph().node_count()) * kPaperFeatureCount);
     reset(world, encoder, runners.back(), env[i]);
   }
   const auto start = Clock::now();
@@ -105,7 +105,7 @@ std::uint64_t planner_signature() {
 double bench_move_ms() {
   const World world = load_one_world("paper:a");
   Rng rng(1);
-  NetworkPolicy policy{PaperParameters(rng)};
+  PaperPolicy policy{PaperParameters(rng)};
   std::vector<double> times_ms;
   Episode episode(world, {});
   episode.reset(0);

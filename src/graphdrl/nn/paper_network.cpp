@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/nn/vector_math.h"
 
 namespace graphdrl {
@@ -38,7 +38,7 @@ nlohmann::json network_description() {
   layers.push_back({{"type", "linear"}, {"inputs", kFc1Shape.inputs}, {"width", kHiddenWidth}});
   layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
   return {{"kind", "paper"},
-          {"features", kFeatureNames},
+          {"features", kPaperFeatureNames},
           {"actions", kDirectionNames},
           {"layers", layers},
           {"activation", "elu"},

@@ -14,7 +14,7 @@
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/exact.h"
 #include "graphdrl/planners/explorer_policy.h"
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/planners/paper_policy.h"
 
 namespace graphdrl {
 namespace {
@@ -65,7 +65,7 @@ std::optional<BeamName> parse_beam_name(std::string_view name) {
 
 std::unique_ptr<Policy> policy_of_file(const std::string& path) {
   if (is_explorer_file(path)) return std::make_unique<ExplorerPolicy>(read_explorer_file(path));
-  return std::make_unique<NetworkPolicy>(read_policy_file(path));
+  return std::make_unique<PaperPolicy>(read_policy_file(path));
 }
 
 }  // namespace

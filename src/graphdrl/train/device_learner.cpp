@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/train/q_network.h"
 
 namespace graphdrl {
@@ -54,7 +54,7 @@ double DeviceLearner::learn(const Minibatch& batch, Rng& rng) {
   torch::Tensor targets;
   {
     const torch::NoGradGuard no_grad;
-    const torch::Tensor next_x = to_device(batch.next_x, {nodes, kFeatureCount});
+    const torch::Tensor next_x = to_device(batch.next_x, {nodes, kPaperFeatureCount});
     const torch::Tensor next_q = composed_q_values(edges, next_x, target_);
     const torch::Tensor chooser = options_.double_dqn ? composed_q_values(edges, next_x, online_) : next_q;
     const torch::Tensor value = next_q.gather(1, chooser.argmax(1, /*keepdim=*/true)).squeeze(1);
@@ -65,7 +65,8 @@ double DeviceLearner::learn(const Minibatch& batch, Rng& rng) {
     targets = to_device(batch.rewards, {graphs}) + options_.discount * value.masked_fill(terminal, 0.0);
   }
   gradients_.zero_();
-  const torch::Tensor q = composed_q_values(edges, to_device(batch.x, {nodes, kFeatureCount}), online_, keep_scale);
+  const torch::Tensor q =
+      composed_q_values(edges, to_device(batch.x, {nodes, kPaperFeatureCount}), online_, keep_scale);
   const torch::Tensor chosen = q.gather(1, torch::tensor(batch.actions).to(device_).unsqueeze(1)).squeeze(1);
   const torch::Tensor loss = torch::mse_loss(chosen, targets);  // L(θ) [paper, eq. 5]
   loss.backward();
@@ -84,7 +85,7 @@ double DeviceLearner::learn(const Minibatch& batch, Rng& rng) {
 
 void DeviceLearner::q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) {
   const torch::NoGradGuard no_grad;
-  const torch::Tensor input = to_tensor(x).view({batch.node_count(), kFeatureCount}).to(device_);
+  const torch::Tensor input = to_tensor(x).view({batch.node_count(), kPaperFeatureCount}).to(device_);
   copy_out(composed_q_values(edges_of(batch, of_move_), input, online_), q);
 }
 

@@ -92,7 +92,7 @@ class GemmReplay {
 
 LearningStepTime time_learning_step(int threads) {
   const World world = load_one_world("paper:a");
-  const std::vector<FeatureEncoder> encoders = {FeatureEncoder(world)};
+  const std::vector<PaperFeatureEncoder> encoders = {PaperFeatureEncoder(world)};
   Rng rng(1);
   const ReplayBuffer replay = random_replay(world, rng);
   KernelLearner learner({}, rng);

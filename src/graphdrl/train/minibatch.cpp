@@ -11,11 +11,12 @@ void Minibatch::clear() {
   terminal.clear();
 }
 
-void append_transition(const ReplayBuffer& replay, std::size_t index, const FeatureEncoder& encoder, Minibatch& batch) {
+void append_transition(const ReplayBuffer& replay, std::size_t index, const PaperFeatureEncoder& encoder,
+                       Minibatch& batch) {
   const Transition& t = replay.transition(index);
   const Graph& graph = encoder.world().graph();
   const std::size_t row = batch.x.size();
-  const std::size_t values = static_cast<std::size_t>(graph.node_count()) * kFeatureCount;
+  const std::size_t values = static_cast<std::size_t>(graph.node_count()) * kPaperFeatureCount;
   batch.graphs.add(graph);
   batch.x.resize(row + values);
   batch.next_x.resize(row + values);
@@ -30,8 +31,8 @@ void append_transition(const ReplayBuffer& replay, std::size_t index, const Feat
   batch.terminal.push_back(t.terminal);
 }
 
-void sample_minibatch(const ReplayBuffer& replay, std::span<const FeatureEncoder> encoders, std::int64_t size, Rng& rng,
-                      Minibatch& batch) {
+void sample_minibatch(const ReplayBuffer& replay, std::span<const PaperFeatureEncoder> encoders, std::int64_t size,
+                      Rng& rng, Minibatch& batch) {
   batch.clear();
   for (std::int64_t i = 0; i < size; ++i) {
     const std::size_t index = rng.below(static_cast<std::uint32_t>(replay.size()));

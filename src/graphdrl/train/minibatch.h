@@ -7,8 +7,8 @@
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/world.h"
-#include "graphdrl/nn/features.h"
 #include "graphdrl/nn/graph_batch.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/train/replay_buffer.h"
 
 namespace graphdrl {
@@ -28,11 +28,12 @@ struct Minibatch {
 };
 
 // Adds one transition, encoded; `encoder` is that of its world.
-void append_transition(const ReplayBuffer& replay, std::size_t index, const FeatureEncoder& encoder, Minibatch& batch);
+void append_transition(const ReplayBuffer& replay, std::size_t index, const PaperFeatureEncoder& encoder,
+                       Minibatch& batch);
 
 // Draws `size` transitions uniformly, with replacement, and builds their features. `encoders` are those of the worlds
 // that the transitions name. The batch's memory is used again.
-void sample_minibatch(const ReplayBuffer& replay, std::span<const FeatureEncoder> encoders, std::int64_t size, Rng& rng,
-                      Minibatch& batch);
+void sample_minibatch(const ReplayBuffer& replay, std::span<const PaperFeatureEncoder> encoders, std::int64_t size,
+                      Rng& rng, Minibatch& batch);
 
 }  // namespace graphdrl

@@ -8,7 +8,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/epsilon_schedule.h"
 
 namespace graphdrl {
@@ -132,7 +132,7 @@ void Trainer::begin_episode() {
 void Trainer::begin_episode_at(int world, NodeId start) {
   world_ = world;
   episodes_[world].reset(start);
-  features_.resize(static_cast<std::size_t>(worlds_[world].graph().node_count()) * kFeatureCount);
+  features_.resize(static_cast<std::size_t>(worlds_[world].graph().node_count()) * kPaperFeatureCount);
   encoders_[world].begin(start, features_);
   actions_.clear();
   episode_reward_ = 0;

@@ -7,7 +7,7 @@
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/episode.h"
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/report/event_writer.h"
 #include "graphdrl/report/metrics_file.h"
 #include "graphdrl/report/progress.h"
@@ -84,8 +84,8 @@ class Trainer {
   TrainOptions options_;
   RunDirectory run_;
   std::vector<World> worlds_;
-  std::vector<FeatureEncoder> encoders_;  // of the worlds
-  std::vector<Episode> episodes_;         // one per world, reset again and again
+  std::vector<PaperFeatureEncoder> encoders_;  // of the worlds
+  std::vector<Episode> episodes_;              // one per world, reset again and again
   Rng rng_;
   std::unique_ptr<Learner> learner_;
   ReplayBuffer replay_;

@@ -1,4 +1,4 @@
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/planners/paper_policy.h"
 
 #include <algorithm>
 
@@ -11,15 +11,15 @@ constexpr std::int64_t kMaxBatchNodes = 8192;  // about 32 MB of working memory
 
 }  // namespace
 
-NetworkPolicy::NetworkPolicy(PaperParameters parameters) : parameters_(std::move(parameters)) {
+PaperPolicy::PaperPolicy(PaperParameters parameters) : parameters_(std::move(parameters)) {
   network_.set_parameters(parameters_);
 }
 
-const FeatureEncoder& NetworkPolicy::encoder_for(const World& world) {
+const PaperFeatureEncoder& PaperPolicy::encoder_for(const World& world) {
   return encoders_.try_emplace(&world, world).first->second;
 }
 
-void NetworkPolicy::q_values(std::span<const Observation> observations, std::span<float> q) {
+void PaperPolicy::q_values(std::span<const Observation> observations, std::span<float> q) {
   while (!observations.empty()) {
     std::size_t count = 1;
     std::int64_t nodes = observations[0].world->graph().node_count();
@@ -34,7 +34,7 @@ void NetworkPolicy::q_values(std::span<const Observation> observations, std::spa
   }
 }
 
-void NetworkPolicy::q_values_of_block(std::span<const Observation> observations, std::span<float> q) {
+void PaperPolicy::q_values_of_block(std::span<const Observation> observations, std::span<float> q) {
   batch_.clear();
   for (const Observation& observation : observations) {
     if (observation.action_space != ActionSpace::kDirections) {
@@ -43,17 +43,17 @@ void NetworkPolicy::q_values_of_block(std::span<const Observation> observations,
     }
     batch_.add(observation.world->graph());
   }
-  features_.resize(static_cast<std::size_t>(batch_.node_count()) * kFeatureCount);
+  features_.resize(static_cast<std::size_t>(batch_.node_count()) * kPaperFeatureCount);
   std::span<float> rest = features_;
   for (const Observation& observation : observations) {
-    const std::size_t size = static_cast<std::size_t>(observation.world->graph().node_count()) * kFeatureCount;
+    const std::size_t size = static_cast<std::size_t>(observation.world->graph().node_count()) * kPaperFeatureCount;
     encoder_for(*observation.world).encode(observation.position, observation.visits, rest.first(size));
     rest = rest.subspan(size);
   }
   network_.q_values(batch_, features_, q);
 }
 
-void NetworkPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
+void PaperPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
   q_.resize(observations.size() * kActionCount);
   q_values(observations, q_);
   for (std::size_t i = 0; i < observations.size(); ++i) {

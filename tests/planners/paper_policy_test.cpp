@@ -1,4 +1,4 @@
-#include "graphdrl/planners/network_policy.h"
+#include "graphdrl/planners/paper_policy.h"
 
 #include <gmock/gmock.h>
 
@@ -17,11 +17,11 @@ TEST(Argmax, TakesTheLowestOfEquals) {
   EXPECT_EQ(argmax(std::vector<float>{-1}), 0);
 }
 
-TEST(NetworkPolicy, TakesTheDirectionOfTheHighestQValueEvenWhereItIsBlocked) {
+TEST(PaperPolicy, TakesTheDirectionOfTheHighestQValueEvenWhereItIsBlocked) {
   // All weights 0: the Q-values are the last layer's biases.
   PaperParameters parameters;
   parameters.tensor("fc2.bias")[1] = 0.5f;  // up
-  NetworkPolicy policy(std::move(parameters));
+  PaperPolicy policy(std::move(parameters));
   const World world = grid_world("..\n..\n");
   const std::vector<NodeId> starts = {0, 3};
   const auto results = roll_out(world, starts, {.budget = 2}, policy);

@@ -1,4 +1,4 @@
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@ namespace graphdrl {
 namespace {
 
 std::vector<float> features_of(const Episode& episode) {
-  std::vector<float> features(episode.visits().size() * kFeatureCount);
-  FeatureEncoder(episode.world()).encode(episode.position(), std::span(episode.visits()), std::span(features));
+  std::vector<float> features(episode.visits().size() * kPaperFeatureCount);
+  PaperFeatureEncoder(episode.world()).encode(episode.position(), std::span(episode.visits()), std::span(features));
   return features;
 }
 
@@ -39,11 +39,11 @@ TEST(Features, KeptUpToDateAreThoseFromScratch) {
   Rng rng(11);
   for (int round = 0; round < 200; ++round) {
     const World world = random_world(rng, 1 + static_cast<int>(rng.below(6)), 1 + static_cast<int>(rng.below(6)), 0.3);
-    const FeatureEncoder encoder(world);
+    const PaperFeatureEncoder encoder(world);
     Episode episode(world, {.budget = 30});
     const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
     episode.reset(start);
-    std::vector<float> features(episode.visits().size() * kFeatureCount);
+    std::vector<float> features(episode.visits().size() * kPaperFeatureCount);
     encoder.begin(start, features);
     while (!episode.done()) {
       ASSERT_EQ(features, features_of(episode));
@@ -57,7 +57,7 @@ TEST(Features, KeptUpToDateAreThoseFromScratch) {
 
 TEST(Features, NeedAGrid) {
   const World world("graph", Graph::from_edges(2, {}), {false, false});
-  EXPECT_NE(error_of([&] { FeatureEncoder encoder(world); }), "");
+  EXPECT_NE(error_of([&] { PaperFeatureEncoder encoder(world); }), "");
 }
 
 }  // namespace

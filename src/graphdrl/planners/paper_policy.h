@@ -5,31 +5,31 @@
 #include <vector>
 
 #include "graphdrl/env/policy.h"
-#include "graphdrl/nn/features.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/nn/paper_network.h"
 
 namespace graphdrl {
 
 // Takes the action of the highest Q-value, the lowest index among equals; blocked moves are not masked. Works on grids
 // of any size, in the directions action space. Throws Error on other worlds.
-class NetworkPolicy final : public Policy {
+class PaperPolicy final : public Policy {
  public:
-  explicit NetworkPolicy(PaperParameters parameters);
-  NetworkPolicy(const NetworkPolicy&) = delete;  // the network points into the parameters
+  explicit PaperPolicy(PaperParameters parameters);
+  PaperPolicy(const PaperPolicy&) = delete;  // the network points into the parameters
 
   void act(std::span<const Observation> observations, std::span<int> actions) override;
 
   // q: [B, A], raw. Many or large observations are worked off in blocks, cut by size.
   void q_values(std::span<const Observation> observations, std::span<float> q);
 
-  const FeatureEncoder& encoder_for(const World& world);
+  const PaperFeatureEncoder& encoder_for(const World& world);
 
  private:
   void q_values_of_block(std::span<const Observation> observations, std::span<float> q);
 
   PaperParameters parameters_;
   PaperNetwork network_;
-  std::map<const World*, FeatureEncoder> encoders_;
+  std::map<const World*, PaperFeatureEncoder> encoders_;
   GraphBatch batch_;
   std::vector<float> features_;  // [N, F]
   std::vector<float> q_;         // [B, A]

@@ -12,17 +12,17 @@
 
 namespace graphdrl {
 
-enum class Feature { kX, kY, kObstacle, kVisits, kWall, kUnvisitedNeighbours, kCurrent };
-inline constexpr int kFeatureCount = 7;
-inline constexpr std::array<std::string_view, kFeatureCount> kFeatureNames = {
+enum class PaperFeature { kX, kY, kObstacle, kVisits, kWall, kUnvisitedNeighbours, kCurrent };
+inline constexpr int kPaperFeatureCount = 7;
+inline constexpr std::array<std::string_view, kPaperFeatureCount> kPaperFeatureNames = {
     "x", "y", "obstacle", "visits", "wall", "unvisited_neighbours", "current"};
 
 // Builds the features of one world's nodes, unscaled. As in the author's code, x is the row and y the column, and an
 // obstacle counts as an unvisited neighbour for ever. Immutable; the world must outlive it.
-class FeatureEncoder {
+class PaperFeatureEncoder {
  public:
   // Throws Error where the world is no grid: x, y and wall need one.
-  explicit FeatureEncoder(const World& world);
+  explicit PaperFeatureEncoder(const World& world);
 
   const World& world() const { return *world_; }
 

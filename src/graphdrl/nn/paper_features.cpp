@@ -1,0 +1,65 @@
+#include "graphdrl/nn/paper_features.h"
+
+#include <algorithm>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+namespace {
+
+float& at(std::span<float> matrix, NodeId node, PaperFeature feature) {
+  return matrix[static_cast<std::size_t>(node) * kPaperFeatureCount + static_cast<std::size_t>(feature)];
+}
+
+}  // namespace
+
+PaperFeatureEncoder::PaperFeatureEncoder(const World& world) : world_(&world) {
+  if (!world.is_grid()) {
+    throw Error({.what = "the paper's features need a grid map", .where = world.name()});
+  }
+  const GridMap& map = *world.map();
+  untouched_.resize(static_cast<std::size_t>(world.graph().node_count()) * kPaperFeatureCount);
+  for (NodeId node = 0; node < world.graph().node_count(); ++node) {
+    const Cell cell = map.cell(node);
+    const bool wall = cell.row == 0 || cell.col == 0 || cell.row == map.rows - 1 || cell.col == map.cols - 1;
+    at(untouched_, node, PaperFeature::kX) = static_cast<float>(cell.row);
+    at(untouched_, node, PaperFeature::kY) = static_cast<float>(cell.col);
+    at(untouched_, node, PaperFeature::kObstacle) = world.is_blocked(node) ? 1.0f : 0.0f;
+    at(untouched_, node, PaperFeature::kWall) = wall ? 1.0f : 0.0f;
+    at(untouched_, node, PaperFeature::kUnvisitedNeighbours) = static_cast<float>(world.graph().degree(node));
+  }
+}
+
+void PaperFeatureEncoder::mark_visited(NodeId node, std::span<float> out) const {
+  for (const NodeId next : world_->graph().neighbours(node)) at(out, next, PaperFeature::kUnvisitedNeighbours) -= 1.0f;
+}
+
+template <typename Count>
+void PaperFeatureEncoder::encode(NodeId position, std::span<const Count> visits, std::span<float> out) const {
+  std::copy(untouched_.begin(), untouched_.end(), out.begin());
+  for (const NodeId node : world_->valid_nodes()) {
+    if (visits[node] == 0) continue;
+    at(out, node, PaperFeature::kVisits) = static_cast<float>(visits[node]);
+    mark_visited(node, out);
+  }
+  at(out, position, PaperFeature::kCurrent) = 1.0f;
+}
+
+template void PaperFeatureEncoder::encode(NodeId, std::span<const std::uint16_t>, std::span<float>) const;
+template void PaperFeatureEncoder::encode(NodeId, std::span<const std::uint32_t>, std::span<float>) const;
+
+void PaperFeatureEncoder::begin(NodeId start, std::span<float> out) const {
+  std::copy(untouched_.begin(), untouched_.end(), out.begin());
+  at(out, start, PaperFeature::kVisits) = 1.0f;
+  at(out, start, PaperFeature::kCurrent) = 1.0f;
+  mark_visited(start, out);
+}
+
+void PaperFeatureEncoder::update(NodeId from, NodeId to, const StepResult& step, std::span<float> out) const {
+  at(out, from, PaperFeature::kCurrent) = 0.0f;
+  at(out, to, PaperFeature::kCurrent) = 1.0f;
+  at(out, to, PaperFeature::kVisits) += 1.0f;
+  if (step.first_visit) mark_visited(to, out);
+}
+
+}  // namespace graphdrl
