@@ -10,7 +10,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/nn/paper_features.h"
 #include "graphdrl/planners/paper_policy.h"
-#include "graphdrl/train/kernel_learner.h"
+#include "graphdrl/train/paper_kernel_learner.h"
 
 namespace graphdrl {
 namespace {
@@ -18,8 +18,8 @@ namespace {
 constexpr int kBatchSize = 32;
 
 // Transitions of random moves on the paper's map a.
-ReplayBuffer random_replay(const World& world, Rng& rng) {
-  ReplayBuffer replay(1'000, static_cast<std::size_t>(world.graph().node_count()));
+PaperReplayBuffer random_replay(const World& world, Rng& rng) {
+  PaperReplayBuffer replay(1'000, static_cast<std::size_t>(world.graph().node_count()));
   Episode episode(world, {});
   for (int i = 0; i < 1'000; ++i) {
     if (i % 25 == 0) episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
@@ -33,8 +33,8 @@ ReplayBuffer random_replay(const World& world, Rng& rng) {
 }
 
 // Every transition of the replay buffer, encoded, in its order.
-Minibatch whole_replay(const ReplayBuffer& replay, const PaperFeatureEncoder& encoder) {
-  Minibatch all;
+PaperMinibatch whole_replay(const PaperReplayBuffer& replay, const PaperFeatureEncoder& encoder) {
+  PaperMinibatch all;
   all.clear();
   for (std::size_t i = 0; i < replay.size(); ++i) append_transition(replay, i, encoder, all);
   return all;
@@ -44,9 +44,9 @@ int serve(const std::string& file, int threads) {
   Rng rng(7);
   const World world = load_one_world("paper:a");
   const std::vector<PaperFeatureEncoder> encoders = {PaperFeatureEncoder(world)};
-  const ReplayBuffer replay = random_replay(world, rng);
-  KernelLearner learner({}, rng);
-  Minibatch batch;  // the first transitions, for the losses to agree on
+  const PaperReplayBuffer replay = random_replay(world, rng);
+  PaperKernelLearner learner({}, rng);
+  PaperMinibatch batch;  // the first transitions, for the losses to agree on
   batch.clear();
   for (std::size_t i = 0; i < kBatchSize; ++i) append_transition(replay, i, encoders.front(), batch);
   const std::vector<float> keep_scale = draw_keep_scale(kBatchSize, kHiddenWidth, 0.5, rng);
@@ -54,7 +54,7 @@ int serve(const std::string& file, int threads) {
   const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
 
   std::vector<TensorView> tensors = weights.views();
-  const Minibatch all = whole_replay(replay, encoders.front());
+  const PaperMinibatch all = whole_replay(replay, encoders.front());
   const auto size = static_cast<std::int64_t>(all.actions.size());
   const Shape states = {size, world.graph().node_count(), kPaperFeatureCount};
   tensors.emplace_back("x", states, std::span<const float>(all.x));

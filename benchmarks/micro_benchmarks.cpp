@@ -1,5 +1,5 @@
 // What single parts cost, and how that grows with nodes, degree, batch and threads; the tables of docs/performance.md.
-//   build/release/bin/micro_benchmarks --benchmark_filter=LearningStep
+//   build/torch/bin/micro_benchmarks --benchmark_filter=LearningStep
 // Each case holds its result against an independent one and reports an error where they differ.
 #include <benchmark/benchmark.h>
 
@@ -14,9 +14,9 @@
 #include "graphdrl/nn/gemm.h"
 #include "graphdrl/nn/paper_features.h"
 #include "graphdrl/planners/paper_policy.h"
-#include "graphdrl/train/composed_network.h"
-#include "graphdrl/train/device_learner.h"
-#include "graphdrl/train/kernel_learner.h"
+#include "graphdrl/train/paper_kernel_learner.h"
+#include "graphdrl/train/torch/paper_composed_network.h"
+#include "graphdrl/train/torch/paper_device_learner.h"
 
 namespace graphdrl {
 namespace {
@@ -86,15 +86,15 @@ struct LearningCase {
   }
 
   Graph graph;
-  Minibatch batch;
+  PaperMinibatch batch;
 };
 
 // One learning step of the paper's network; its first loss against LibTorch's own operators.
 void time_learning_step(benchmark::State& state, const LearningCase& work, int threads) {
   Rng rng(3);
   Rng rng_of_operators(3);
-  KernelLearner learner({}, rng);
-  DeviceLearner operators(torch::kCPU, {}, rng_of_operators);
+  PaperKernelLearner learner({}, rng);
+  PaperDeviceLearner operators(torch::kCPU, {}, rng_of_operators);
   set_threads(threads);
   const double loss = learner.learn(work.batch, rng);
   for (auto _ : state) learner.learn(work.batch, rng);

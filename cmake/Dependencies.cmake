@@ -6,16 +6,16 @@ find_package(CLI11 REQUIRED)
 find_package(Protobuf REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 
-if(GRAPHDRL_TRAIN)
-  # LibTorch's BLAS: OpenBLAS's OpenMP build and no other; with the pthread build its thread pool fights OpenMP's. Debian keeps each build
-  # in a folder of its own. The programs look there first (DT_RPATH, which, unlike DT_RUNPATH, also holds for the
-  # libblas.so.3 that LibTorch asks for), whatever the system's alternatives say.
+if(GRAPHDRL_TORCH)
+  # LibTorch's BLAS: OpenBLAS's OpenMP build and no other; with the pthread build its thread pool fights OpenMP's.
+  # Debian keeps each build in a folder of its own. The programs look there first (DT_RPATH, which, unlike DT_RUNPATH,
+  # also holds for the libblas.so.3 that LibTorch asks for), whatever the system's alternatives say.
   find_path(OPENBLAS_INCLUDE_DIR cblas.h
     PATH_SUFFIXES ${CMAKE_LIBRARY_ARCHITECTURE}/openblas-openmp openblas-openmp REQUIRED)
   find_library(OPENBLAS_LIBRARY openblas PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/openblas-openmp
     NO_DEFAULT_PATH)
   if(NOT OPENBLAS_LIBRARY)
-    message(FATAL_ERROR "OpenBLAS's OpenMP build not found: install libopenblas-openmp-dev (scripts/setup does)")
+    message(FATAL_ERROR "OpenBLAS's OpenMP build not found: install libopenblas-openmp-dev (scripts/setup --torch does)")
   endif()
   get_filename_component(OPENBLAS_DIR ${OPENBLAS_LIBRARY} DIRECTORY)
   add_library(graphdrl_blas INTERFACE)

@@ -1,42 +1,57 @@
 #include "graphdrl/train/adam.h"
 
 #include <gtest/gtest.h>
-#include <torch/torch.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "graphdrl/base/parallel.h"
+#include "graphdrl/base/random.h"
 
 namespace graphdrl {
 namespace {
 
-std::span<float> values_of(const torch::Tensor& tensor) {
-  return {tensor.data_ptr<float>(), static_cast<std::size_t>(tensor.numel())};
+constexpr std::size_t kCount = 40'001;  // blocks, and a remainder
+
+std::vector<float> random_values(Rng& rng) {
+  std::vector<float> values(kCount);
+  for (float& value : values) value = static_cast<float>(4 * rng.uniform() - 2);
+  return values;
 }
 
-TEST(Adam, IsLibTorchsWithClampedGradients) {
-  torch::manual_seed(1);
-  constexpr std::int64_t kCount = 40'001;  // blocks, and a remainder
-  const torch::Tensor expected = torch::randn({kCount}).requires_grad_(true);
-  const torch::Tensor values = expected.detach().clone();
-  torch::optim::Adam reference({expected}, torch::optim::AdamOptions(3e-3));
+// The formula of Kingma and Ba [2015, algorithm 1] in double, on gradients cut to ±1.
+TEST(Adam, IsItsFormulaWithClampedGradients) {
+  Rng rng(1);
+  std::vector<float> values = random_values(rng);
+  std::vector<double> expected(values.begin(), values.end());
+  std::vector<double> first(kCount);
+  std::vector<double> second(kCount);
   Adam adam(kCount, {.learning_rate = 3e-3});
-  for (int step = 0; step < 20; ++step) {
-    const torch::Tensor grad = torch::randn({kCount}) * 0.8;
-    set_threads(1 + step % 3);
-    adam.step(values_of(grad), values_of(values));
-    expected.mutable_grad() = grad.clamp(-1, 1);
-    reference.step();
+  for (int t = 1; t <= 20; ++t) {
+    const std::vector<float> grad = random_values(rng);
+    set_threads(1 + t % 3);
+    adam.step(grad, values);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const double g = std::clamp<double>(grad[i], -1, 1);
+      first[i] = 0.9 * first[i] + 0.1 * g;
+      second[i] = 0.999 * second[i] + 0.001 * g * g;
+      const double m = first[i] / (1 - std::pow(0.9, t));
+      const double v = second[i] / (1 - std::pow(0.999, t));
+      expected[i] -= 3e-3 * m / (std::sqrt(v) + 1e-8);
+    }
   }
   set_threads(1);
-  EXPECT_EQ(adam.steps(), 20);
-  EXPECT_TRUE(torch::allclose(values, expected, 1e-5, 1e-6));
+  EXPECT_EQ(adam.state().steps, 20);
+  for (std::size_t i = 0; i < kCount; ++i) ASSERT_NEAR(values[i], expected[i], 1e-5) << i;
 }
 
 TEST(SoftUpdate, IsEquation6) {
-  const torch::Tensor online = torch::randn({40'001});
-  const torch::Tensor target = torch::randn({40'001});
-  const torch::Tensor expected = 0.3 * online + 0.7 * target;
-  soft_update(values_of(online), 0.3, values_of(target));
-  EXPECT_TRUE(torch::allclose(target, expected, 1e-5, 1e-6));
+  Rng rng(2);
+  const std::vector<float> online = random_values(rng);
+  const std::vector<float> before = random_values(rng);
+  std::vector<float> target = before;
+  soft_update(online, 0.3, target);
+  for (std::size_t i = 0; i < kCount; ++i) ASSERT_NEAR(target[i], 0.3 * online[i] + 0.7 * before[i], 1e-6) << i;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/nn/paper_features.h"
-#include "graphdrl/train/kernel_learner.h"
+#include "graphdrl/train/paper_kernel_learner.h"
 
 namespace graphdrl {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr double kDiscount = 0.99;
 
 // Another network's values with batch norm statistics that are not the initial ones, so that none of them cancels out.
-void disturb(QNetwork& network, Rng& rng) {
+void disturb(PaperQNetwork& network, Rng& rng) {
   PaperParameters other(rng);
   for (const TensorSpec& spec : PaperParameters::specs()) {
     float* const values = network.parameters().tensor(spec.name);
@@ -38,7 +38,7 @@ int write_probe(const std::string& out, bool double_dqn) {
   worlds.emplace_back("wide", GridMap{.rows = 3, .cols = 9, .blocked = std::vector<bool>(27)});
   worlds.emplace_back("large", GridMap{.rows = 11, .cols = 11, .blocked = std::vector<bool>(121)});
 
-  Minibatch batch;
+  PaperMinibatch batch;
   batch.graphs.clear();
   Edges edges;
   std::vector<std::int64_t> first_nodes = {0};
@@ -67,7 +67,7 @@ int write_probe(const std::string& out, bool double_dqn) {
     first_nodes.push_back(batch.graphs.node_count());
   }
 
-  KernelLearner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);
+  PaperKernelLearner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);
   disturb(learner.online(), rng);
   disturb(learner.target(), rng);
   std::vector<float> q(batch.actions.size() * kActionCount);

@@ -2,109 +2,117 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <limits>
+#include <set>
+
 #include "graphdrl/base/parallel.h"
-#include "graphdrl/io/file.h"
-#include "support.h"
+#include "train/training.h"
 
 namespace graphdrl {
 namespace {
 
 using ::testing::HasSubstr;
 
-// A stream that shows nothing.
-struct Silence {
-  std::FILE* file = std::fopen("/dev/null", "w");
-  ~Silence() { std::fclose(file); }
-};
+// What every preset must do.
+class AnyTraining : public ::testing::TestWithParam<TrainOptions> {};
 
-TrainOptions short_training() {
-  TrainOptions options;
-  options.maps = {"paper:a", "paper:h"};
-  options.episodes = 6;
-  options.budget = "12";
-  options.batch_size = 8;
-  options.replay_capacity = 40;  // wraps around
-  options.checkpoint_every = 2;
+TrainOptions with_double_dqn(TrainOptions options) {
+  options.algorithm = options.teacher = "double_dqn";
   return options;
 }
 
-void train(Trainer& trainer) {
-  const Silence silence;
-  ProgressDisplay display(silence.file, "episode", 0);
-  EXPECT_TRUE(trainer.run([] { return false; }, display));
-}
+INSTANTIATE_TEST_SUITE_P(, AnyTraining,
+                         ::testing::Values(short_paper(), with_double_dqn(short_paper()), short_explorer(),
+                                           with_double_dqn(short_explorer())),
+                         [](const auto& test) {
+                           const std::string how = test.param.algorithm + test.param.teacher;
+                           return test.param.preset + "_" + how.substr(0, how.find("_dqn"));
+                         });
 
-struct Bytes {
-  std::string policy;
-  std::string metrics;
-};
-
-Bytes bytes_of(const RunDirectory& run) {
-  return {read_file(run.policy()), read_file(run.metrics())};
-}
-
-TEST(Trainer, GivesTheSameBytesForAnyNumberOfThreads) {
+TEST_P(AnyTraining, GivesTheSameBytesForAnyNumberOfThreads) {
   const TemporaryFolder folder;
-  std::vector<Bytes> results;
-  for (const int count : {1, 2, 4, 1}) {
+  const Bytes once = train_in(folder / "1", GetParam());
+  for (const int count : {2, 4}) {
     set_threads(count);
-    const RunDirectory run(folder / ("run" + std::to_string(results.size())));
-    train(*Trainer::start(short_training(), run));
-    results.push_back(bytes_of(run));
+    EXPECT_TRUE(train_in(folder / std::to_string(count), GetParam()) == once) << count;
   }
   set_threads(1);
-  for (const Bytes& result : results) {
-    EXPECT_TRUE(result.policy == results[0].policy);
-    EXPECT_EQ(result.metrics, results[0].metrics);
-  }
-  TrainOptions other = short_training();
+  TrainOptions other = GetParam();
   other.seed = 2;
-  const RunDirectory run(folder / "other");
-  train(*Trainer::start(other, run));
-  EXPECT_FALSE(bytes_of(run).policy == results[0].policy);
+  EXPECT_FALSE(train_in(folder / "other", other).policy == once.policy);
 }
 
-// Stops a training after every so many steps, wherever that is, and resumes it each time.
-TEST(Trainer, EndsWithTheSameBytesHoweverOftenItIsInterrupted) {
+// Stops a training whenever it has asked so often, wherever that is, and resumes it each time.
+TEST_P(AnyTraining, EndsWithTheSameBytesHoweverOftenItIsInterrupted) {
   const TemporaryFolder folder;
-  TrainOptions options = short_training();
-  options.algorithm = "double_dqn";
-  const RunDirectory whole(folder / "whole");
-  train(*Trainer::start(options, whole));
-
-  const RunDirectory pieces(folder / "pieces");
-  const Silence silence;
-  Trainer::start(options, pieces);
-  bool finished = false;
-  int sessions = 0;
-  for (; !finished; ++sessions) {
-    const auto trainer = Trainer::resume(pieces);
-    ProgressDisplay display(silence.file, "episode", 0);
-    finished = trainer->run([steps = 0]() mutable { return steps++ == 5; }, display);
+  const Bytes whole = train_in(folder / "whole", GetParam());
+  for (const int questions : {1, 5}) {
+    const RunDirectory pieces(folder / ("pieces" + std::to_string(questions)));
+    Trainer::start(GetParam(), pieces);
+    int sessions = 1;
+    while (!train(*Trainer::resume(pieces), [asked = 0, questions]() mutable { return asked++ == questions; })) {
+      ++sessions;
+    }
+    EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? 72 / (questions + 1) : questions == 1 ? 1 : 0);
+    EXPECT_TRUE(bytes_of(pieces) == whole) << questions;
   }
-  EXPECT_GT(sessions, 10);
-  EXPECT_TRUE(bytes_of(pieces).policy == bytes_of(whole).policy);
-  EXPECT_EQ(bytes_of(pieces).metrics, bytes_of(whole).metrics);
 }
 
-TEST(Trainer, RefusesADirectoryThatHoldsARunAndDamagedOnes) {
+// A crash leaves an older checkpoint beside newer metrics.
+TEST_P(AnyTraining, GoesOnFromAnOlderCheckpoint) {
+  const TemporaryFolder folder;
+  TrainOptions options = GetParam();
+  options.episodes *= 4;  // more than one line of metrics
+  const RunDirectory run(folder / "run");
+  const std::int64_t questions = options.preset == kPaperPreset ? 70 : 1;
+  train(*Trainer::start(options, run), [&, asked = 0]() mutable { return asked++ == questions; });
+  const std::string old_checkpoint = read_file(run.checkpoint());
+  train(*Trainer::resume(run));
+  const Bytes whole = bytes_of(run);
+  write_file(run.checkpoint(), old_checkpoint);
+  train(*Trainer::resume(run));
+  EXPECT_TRUE(bytes_of(run) == whole);
+}
+
+TEST_P(AnyTraining, LeavesTheSameKindOfDirectory) {
   const TemporaryFolder folder;
   const RunDirectory run(folder / "run");
-  TrainOptions options = short_training();
-  Trainer::start(options, run);
-  EXPECT_THAT(error_of([&] { Trainer::start(options, run); }), HasSubstr("holds a run already"));
+  train(*Trainer::start(GetParam(), run));
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(run.path())) {
+    const std::string name = entry.path().filename().string();
+    names.insert(name.substr(0, name.find(".tfevents.")));
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"checkpoint.safetensors", "config.json", "events.out", "metrics.jsonl",
+                                          "policy.safetensors"}));
+  const Safetensors file = Safetensors::read(run.checkpoint());
+  for (const char* const name : {"adam.exp_avg", "adam.exp_avg_sq", "adam.step", "random.state", "replay.next"}) {
+    EXPECT_EQ(error_of([&] { file.shape_of(name); }), "");
+  }
+  EXPECT_EQ(file.metadata().at("preset"), GetParam().preset);
+  EXPECT_EQ(file.metadata().at("layout"), std::to_string(kCheckpointLayout));
+  EXPECT_THAT(file.metadata().at("progress"), HasSubstr("\"samples\""));
+}
+
+TEST_P(AnyTraining, RefusesADirectoryThatHoldsARunAndDamagedOnes) {
+  const TemporaryFolder folder;
+  const RunDirectory run(folder / "run");
+  train(*Trainer::start(GetParam(), run), [asked = 0]() mutable { return asked++ == 1; });
+  EXPECT_THAT(error_of([&] { Trainer::start(GetParam(), run); }), HasSubstr("holds a run already"));
   EXPECT_EQ(error_of([&] { Trainer::resume(run); }), "");
 
   const std::string checkpoint = read_file(run.checkpoint());
-  write_file(run.checkpoint(), checkpoint.substr(0, checkpoint.size() / 2));
-  EXPECT_THAT(error_of([&] { Trainer::resume(run); }), HasSubstr("checkpoint.safetensors"));
-  write_file(run.checkpoint(), checkpoint);
   Rng rng(9);
+  for (int i = 0; i < 10; ++i) {
+    write_file(run.checkpoint(), checkpoint.substr(0, rng.below(static_cast<std::uint32_t>(checkpoint.size()))));
+    EXPECT_THAT(error_of([&] { Trainer::resume(run); }), HasSubstr("checkpoint.safetensors"));
+  }
   for (int i = 0; i < 60; ++i) {  // damage is an Error, or a run that can go on
     std::string damaged = checkpoint;
-    const std::size_t header = i % 2 == 0 ? 4'000 : damaged.size();
+    const std::size_t range = i % 2 == 0 ? 4'000 : damaged.size();
     for (int n = 0; n < 4; ++n)
-      damaged[rng.below(static_cast<std::uint32_t>(header))] = static_cast<char>(rng.below(256));
+      damaged[rng.below(static_cast<std::uint32_t>(range))] = static_cast<char>(rng.below(256));
     write_file(run.checkpoint(), damaged);
     error_of([&] { Trainer::resume(run); });
   }
@@ -117,70 +125,27 @@ TEST(Trainer, RefusesADirectoryThatHoldsARunAndDamagedOnes) {
   EXPECT_NE(error_of([&] { Trainer::resume(RunDirectory(folder / "nothing")); }), "");
 
   write_file(folder / "file", "");
-  EXPECT_NE(error_of([&] { Trainer::start(options, RunDirectory(folder / "file/run")); }), "");
+  EXPECT_NE(error_of([&] { Trainer::start(GetParam(), RunDirectory(folder / "file/run")); }), "");
 }
 
-// A crash leaves an older checkpoint beside newer metrics.
-TEST(Trainer, GoesOnFromAnOlderCheckpoint) {
+TEST_P(AnyTraining, RefusesAdamsStateThatNoTrainingHas) {
   const TemporaryFolder folder;
-  TrainOptions options = short_training();
-  options.episodes = 24;
   const RunDirectory run(folder / "run");
-  const auto trainer = Trainer::start(options, run);
-  const Silence silence;
-  ProgressDisplay display(silence.file, "episode", 0);
-  trainer->run([steps = 0]() mutable { return steps++ == 70; }, display);
-  const std::string old_checkpoint = read_file(run.checkpoint());
-  train(*Trainer::resume(run));
-  const Bytes whole = bytes_of(run);
-  write_file(run.checkpoint(), old_checkpoint);
-  train(*Trainer::resume(run));
-  EXPECT_TRUE(bytes_of(run).policy == whole.policy);
-  EXPECT_EQ(bytes_of(run).metrics, whole.metrics);
-}
-
-TEST(Trainer, RemembersItsMaps) {
-  const TemporaryFolder folder;
-  TrainOptions options = short_training();
-  write_file(folder / "map.txt", "....\n.#..\n");
-  options.maps = {(folder / "map.txt").string()};
-  options.start = "1,2";
-  const RunDirectory run(folder / "run");
-  Trainer::start(options, run);
-  write_file(folder / "map.txt", "gone");
-  train(*Trainer::resume(run));
-}
-
-TEST(TrainOptions, AreChecked) {
-  const auto error_for = [](auto change) {
-    TrainOptions options;
-    change(options);
-    return error_of([&] { validate(options); });
+  Trainer::start(GetParam(), run);
+  const std::string whole = read_file(run.checkpoint());
+  const auto error_with = [&](const std::string& content) {
+    write_file(run.checkpoint(), content);
+    return error_of([&] { Trainer::resume(run); });
   };
-  EXPECT_EQ(error_for([](TrainOptions&) {}), "");
-  EXPECT_THAT(error_for([](TrainOptions& o) { o.preset = "best"; }), HasSubstr("--preset"));
-  EXPECT_THAT(error_for([](TrainOptions& o) { o.reward = "gold"; }), HasSubstr("visit_penalty or coverage_gain"));
-  EXPECT_THAT(error_for([](TrainOptions& o) { o.episodes = 0; }), HasSubstr("--episodes"));
-  EXPECT_THAT(error_for([](TrainOptions& o) { o.discount = 1.5; }), HasSubstr("expected 0 to 1, got 1.5"));
-  EXPECT_THAT(error_for([](TrainOptions& o) { o.replay_capacity = 32; }), HasSubstr("--replay-capacity"));
-  EXPECT_THAT(error_for([](TrainOptions& o) { o.learning_rate = NAN; }), HasSubstr("--learning-rate"));
-  EXPECT_THAT(error_for([](TrainOptions& o) { o.budget = "-3"; }), HasSubstr("bad budget"));
-  EXPECT_THAT(error_for([](TrainOptions& o) {
-                o.reward = "coverage_gain";
-                o.punish_blocked_by_visits = true;
-              }),
-              HasSubstr("--punish-blocked-by-visits"));
-}
-
-TEST(TrainOptions, SurviveTheConfigurationFile) {
-  const TemporaryFolder folder;
-  TrainOptions options = short_training();
-  options.end_at_full_coverage = true;
-  options.learning_rate = 0.1 + 0.2;
-  write_config(folder / "c", options);
-  write_config(folder / "again", read_config(folder / "c"));
-  EXPECT_EQ(read_file(folder / "c"), read_file(folder / "again"));
-  EXPECT_EQ(read_config(folder / "c").learning_rate, options.learning_rate);
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  for (const float value : {NAN, kInfinite, -kInfinite}) {
+    EXPECT_THAT(error_with(with_element(whole, "adam.exp_avg", 7, value)), HasSubstr("Adam's state is damaged"));
+  }
+  for (const float value : {NAN, kInfinite, -1e-9f}) {
+    EXPECT_THAT(error_with(with_element(whole, "adam.exp_avg_sq", 7, value)), HasSubstr("Adam's state is damaged"));
+  }
+  EXPECT_THAT(error_with(with_element<std::int64_t>(whole, "adam.step", 0, -1)), HasSubstr("Adam's state is damaged"));
+  EXPECT_EQ(error_with(with_element(whole, "adam.exp_avg", 7, -1.0f)), "");
 }
 
 }  // namespace

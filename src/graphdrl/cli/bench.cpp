@@ -1,15 +1,18 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdio>
 #include <memory>
-#include <optional>
 
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/eval/bench.h"
 #include "graphdrl/eval/statistics.h"
+#include "graphdrl/train/learning_step_bench.h"
+
+#ifdef GRAPHDRL_OPENBLAS
+#include <cblas.h>
+#endif
 
 namespace graphdrl {
 namespace {
@@ -17,27 +20,17 @@ namespace {
 constexpr std::array kThreadCounts = {1, 2};
 constexpr int kRounds = 15;
 
-struct LearningStep {
-  double step_ms;
-  double products_ms;
-  double sgemm_ms;
-};
-
-// Asks the trainer, which links LibTorch; empty where it is not installed.
-std::optional<LearningStep> time_learning_step(int threads) {
-  const std::filesystem::path trainer = trainer_program();
-  if (!std::filesystem::exists(trainer)) return std::nullopt;
-  std::string path;
-  for (const char c : trainer.string()) path += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  const std::string command = fmt::format("'{}' --bench-learning-step --threads {}", path, threads);
-  const std::unique_ptr<FILE, int (*)(FILE*)> output(popen(command.c_str(), "r"), pclose);
-  std::string text;
-  std::array<char, 4096> block{};
-  while (output && std::fgets(block.data(), block.size(), output.get()) != nullptr) text += block.data();
-  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) return std::nullopt;
-  return LearningStep{
-      .step_ms = json["learning_step_ms"], .products_ms = json["products_ms"], .sgemm_ms = json["sgemm_ms"]};
+// OpenBLAS's product on one thread, in builds that have it.
+GemmFunction openblas_product() {
+#ifdef GRAPHDRL_OPENBLAS
+  openblas_set_num_threads(1);
+  return [](const GemmShape& shape, const float* a, const float* b, float* c) {
+    cblas_sgemm(CblasRowMajor, shape.a_transposed ? CblasTrans : CblasNoTrans, CblasNoTrans, shape.m, shape.n, shape.k,
+                1.0f, a, shape.lda, b, shape.n, 0.0f, c, shape.ldc);
+  };
+#else
+  return nullptr;
+#endif
 }
 
 Json run_bench() {
@@ -61,20 +54,20 @@ Json run_bench() {
   json["move_ms"] = bench_move_ms();
   json["learning_step_ms"] = Json::object();
   json["products_share"] = Json::object();
-  json["gemm_share"] = Json::object();
+  json["gemm_share"] = nullptr;
   for (const int count : kThreadCounts) {
-    const auto time = time_learning_step(count);
+    const LearningStepTime time = time_learning_step(count, openblas_product());
     const std::string key = std::to_string(count);
-    json["learning_step_ms"][key] = time ? Json(time->step_ms) : Json();
-    json["products_share"][key] = time ? Json(time->products_ms / time->step_ms) : Json();
-    json["gemm_share"][key] = time ? Json(time->sgemm_ms / time->step_ms) : Json();
+    json["learning_step_ms"][key] = time.step_ms;
+    json["products_share"][key] = time.products_ms / time.step_ms;
+    if (time.other_products_ms) json["gemm_share"][key] = *time.other_products_ms / time.step_ms;
   }
   return json;
 }
 
 std::string format_bench(const Json& json) {
   const auto number = [](const Json& value, double scale, const char* unit) {
-    return value.is_null() ? std::string("–") : fmt::format("{:.2f}{}", value.get<double>() * scale, unit);
+    return fmt::format("{:.2f}{}", value.get<double>() * scale, unit);
   };
   std::string text = fmt::format("signature             {}\n", json["signature"].get<std::string>());
   const auto line = [&](const char* name, const char* key, double scale, const char* unit) {
@@ -85,7 +78,7 @@ std::string format_bench(const Json& json) {
   text += fmt::format("{:20}  {}\n", "choosing one move", number(json["move_ms"], 1, " ms"));
   line("learning step", "learning_step_ms", 1, " ms");
   line("its products alone", "products_share", 100, " % of it");
-  line("by OpenBLAS's sgemm", "gemm_share", 100, " % of it");
+  if (!json["gemm_share"].is_null()) line("by OpenBLAS's sgemm", "gemm_share", 100, " % of it");
   return text;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
 namespace graphdrl {
 
@@ -12,8 +11,5 @@ void add_inspect_command(CLI::App& app);
 void add_maps_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_train_command(CLI::App& app);
-
-// Where graphdrl-train stands, installed or not: beside this program.
-std::filesystem::path trainer_program();
 
 }  // namespace graphdrl

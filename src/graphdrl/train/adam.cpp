@@ -23,8 +23,8 @@ void for_each_block(std::size_t count, const Visit& visit) {
 }  // namespace
 
 void Adam::step(std::span<const float> grad, std::span<float> values) {
-  ++steps_;
-  const auto t = static_cast<double>(steps_);
+  ++state_.steps;
+  const auto t = static_cast<double>(state_.steps);
   const AdamStep step{.clamp = static_cast<float>(options_.clamp),
                       .beta1 = static_cast<float>(options_.beta1),
                       .beta2 = static_cast<float>(options_.beta2),
@@ -32,7 +32,8 @@ void Adam::step(std::span<const float> grad, std::span<float> values) {
                       .second_scale = static_cast<float>(1 / std::sqrt(1 - std::pow(options_.beta2, t))),
                       .epsilon = static_cast<float>(options_.epsilon)};
   for_each_block(values.size(), [&](std::size_t begin, std::size_t size) {
-    adam_update(step, grad.data() + begin, first_.data() + begin, second_.data() + begin, values.data() + begin, size);
+    adam_update(step, grad.data() + begin, state_.exp_avg.data() + begin, state_.exp_avg_sq.data() + begin,
+                values.data() + begin, size);
   });
 }
 

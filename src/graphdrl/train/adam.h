@@ -18,29 +18,33 @@ struct AdamOptions {
   double clamp = 1.0;  // gradients are cut to [-clamp, clamp], element by element, as in the author's code
 };
 
-// The moments of a flat buffer of parameters.
+// What Adam remembers, under PyTorch's names.
+struct AdamState {
+  AdamState() = default;
+  explicit AdamState(std::size_t count) : exp_avg(count), exp_avg_sq(count) {}
+
+  std::vector<float> exp_avg;     // mean of the gradients
+  std::vector<float> exp_avg_sq;  // mean of their squares
+  std::int64_t steps = 0;
+};
+
+// The optimiser of a flat buffer of `count` parameters.
 class Adam {
  public:
-  Adam(std::size_t count, const AdamOptions& options) : options_(options), first_(count), second_(count) {}
+  Adam(std::size_t count, const AdamOptions& options) : options_(options), state_(count) {}
 
   // One step. REQUIRES: both as long as the moments.
   void step(std::span<const float> grad, std::span<float> values);
 
   void set_learning_rate(double rate) { options_.learning_rate = rate; }
 
-  // For checkpoints.
-  std::int64_t& steps() { return steps_; }
-  std::vector<float>& first() { return first_; }
-  std::vector<float>& second() { return second_; }
-  std::int64_t steps() const { return steps_; }
-  const std::vector<float>& first() const { return first_; }
-  const std::vector<float>& second() const { return second_; }
+  const AdamState& state() const { return state_; }
+  // REQUIRES: as many moments as before.
+  void set_state(AdamState state) { state_ = std::move(state); }
 
  private:
   AdamOptions options_;
-  std::int64_t steps_ = 0;
-  std::vector<float> first_;   // mean of the gradients
-  std::vector<float> second_;  // mean of their squares
+  AdamState state_;
 };
 
 // θ' ← share · θ + (1 - share) · θ' [paper, eq. 6]

@@ -6,8 +6,10 @@
 namespace graphdrl {
 namespace {
 
-constexpr double kHuberKnee = 2;  // nodes
-constexpr double kFarShort = 4;   // nodes: where even the best falls this short, values count half
+// Chosen once and kept; docs/explorer.md tells which parts of the loss pay.
+constexpr double kHuberKnee = 2;       // nodes
+constexpr double kFarShort = 4;        // nodes: where even the best falls this short, values count half
+constexpr double kLeastShare = 1e-30;  // keeps the logarithm of a share finite
 
 double huber(double error) {
   const double size = std::abs(error);
@@ -80,7 +82,7 @@ double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, s
       const double goal = odds(label[v] - state.least_label) / label_sum;
       const double share = odds(shortfall[v] - state.least_shortfall) / shortfall_sum;
       loss += value_weight * huber(error) + deviation_weight * huber(deviation) -
-              ranking / states * goal * std::log(std::max(share, 1e-30));
+              ranking / states * goal * std::log(std::max(share, kLeastShare));
       grad[v] = static_cast<float>(value_weight * huber_slope(error) +
                                    deviation_weight * (huber_slope(deviation) - mean_slope) +
                                    ranking / states * (goal - share) / kRankingTemperature);
@@ -97,6 +99,17 @@ ExplorerLearner::ExplorerLearner(const ExplorerLearnerOptions& options, Rng& rng
 void ExplorerLearner::update() {
   network_.set_parameters(online_);
   if (options_.bootstrap) target_network_.set_parameters(target_);
+}
+
+LearnedState<ExplorerParameters> ExplorerLearner::state() const {
+  return {.online = online_, .target = target_, .adam = adam_.state()};
+}
+
+void ExplorerLearner::set_state(const LearnedState<ExplorerParameters>& state) {
+  online_ = state.online;
+  target_ = state.target;
+  adam_.set_state(state.adam);
+  update();
 }
 
 double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rate) {

@@ -6,10 +6,13 @@
 
 #include "graphdrl/nn/explorer_network.h"
 #include "graphdrl/train/adam.h"
+#include "graphdrl/train/checkpoint.h"
 #include "graphdrl/train/lessons.h"
 
 namespace graphdrl {
 
+// Of the loss on which first visit is best: half a node of difference is odds of 1 to e. The weight of that loss was
+// tried (docs/explorer.md, "What pays"), this figure was not.
 inline constexpr double kRankingTemperature = 0.5;  // nodes
 
 // The loss over states, and its derivative by `shortfall`. label, shortfall, grad: [C]; kUnlabelled ones count for
@@ -38,12 +41,14 @@ class ExplorerLearner {
   // a mean over states.
   double regret() const { return regret_; }
 
-  ExplorerParameters& online() { return online_; }
-  ExplorerParameters& target() { return target_; }
-  Adam& adam() { return adam_; }
-  void update();  // after every change of the parameters
+  const ExplorerParameters& online() const { return online_; }
+
+  LearnedState<ExplorerParameters> state() const;
+  void set_state(const LearnedState<ExplorerParameters>& state);
 
  private:
+  void update();  // after every change of the parameters
+
   // Double DQN [van Hasselt et al. 2016] over first visits, undiscounted: what a first visit is worth by the target
   // network's value of the one that the online network would make next. Every other one stays unlabelled.
   void bootstrap_labels(std::span<const Lesson* const> lessons);

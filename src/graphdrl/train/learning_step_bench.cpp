@@ -1,7 +1,6 @@
 #include "graphdrl/train/learning_step_bench.h"
 
-#include <cblas.h>
-
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <vector>
@@ -10,8 +9,8 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/statistics.h"
 #include "graphdrl/nn/gemm.h"
-#include "graphdrl/train/kernel_learner.h"
-#include "graphdrl/train/minibatch.h"
+#include "graphdrl/train/paper_kernel_learner.h"
+#include "graphdrl/train/paper_minibatch.h"
 
 namespace graphdrl {
 namespace {
@@ -29,8 +28,8 @@ double time_ms(const Work& work) {
   return elapsed.count() / kRepeats;
 }
 
-ReplayBuffer random_replay(const World& world, Rng& rng) {
-  ReplayBuffer replay(100'000, static_cast<std::size_t>(world.graph().node_count()));
+PaperReplayBuffer random_replay(const World& world, Rng& rng) {
+  PaperReplayBuffer replay(100'000, static_cast<std::size_t>(world.graph().node_count()));
   Episode episode(world, {});
   for (int i = 0; i < kReplayEpisodes; ++i) {
     episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
@@ -51,13 +50,7 @@ ReplayBuffer random_replay(const World& world, Rng& rng) {
   return replay;
 }
 
-// OpenBLAS's product of this shape.
-void sgemm(const GemmShape& shape, const float* a, const float* b, float* c) {
-  cblas_sgemm(CblasRowMajor, shape.a_transposed ? CblasTrans : CblasNoTrans, CblasNoTrans, shape.m, shape.n, shape.k,
-              1.0f, a, shape.lda, b, shape.n, 0.0f, c, shape.ldc);
-}
-
-// Our own, packing its right operand, as sgemm does.
+// Our own product, packing its right operand, as other libraries do.
 void own_gemm(const GemmShape& shape, const float* a, const float* b, float* c) {
   gemm(shape.a_transposed ? Op::kTranspose : Op::kNone, Op::kNone, shape.m, shape.n, shape.k, a, shape.lda, b, shape.n,
        false, c, shape.ldc);
@@ -70,33 +63,37 @@ class GemmReplay {
   GemmReplay(std::vector<GemmShape> shapes, int threads)
       : shapes_(std::move(shapes)), inputs_(kArena, 0.01f), outputs_(threads, std::vector<float>(kArena)) {}
 
-  template <typename Product>
-  void run(const Product& product) {
-    parallel_for(static_cast<int>(shapes_.size()), [&](int index) {
-      float* const c = outputs_[omp_get_thread_num()].data() + place(3 * index);
-      product(shapes_[index], inputs_.data() + place(3 * index + 1), inputs_.data() + place(3 * index + 2), c);
+  // Each worker writes to outputs of its own, and takes the next product when it is done with one.
+  void run(GemmFunction product) {
+    std::atomic<std::size_t> next = 0;
+    parallel_for(static_cast<int>(outputs_.size()), [&](int worker) {
+      for (std::size_t i = next++; i < shapes_.size(); i = next++) {
+        product(shapes_[i], inputs_.data() + place(3 * i + 1), inputs_.data() + place(3 * i + 2),
+                outputs_[worker].data() + place(3 * i));
+      }
     });
   }
 
  private:
   static constexpr std::size_t kArena = std::size_t{1} << 20;    // floats
   static constexpr std::size_t kLargest = std::size_t{1} << 19;  // no operand is larger
-  static std::size_t place(int operand) { return static_cast<std::size_t>(operand) * 51'200 % (kArena - kLargest); }
+  static constexpr std::size_t kStride = 51'200;                 // from one operand to the next
+  static std::size_t place(std::size_t operand) { return operand * kStride % (kArena - kLargest); }
 
   std::vector<GemmShape> shapes_;
   std::vector<float> inputs_;
-  std::vector<std::vector<float>> outputs_;  // by thread
+  std::vector<std::vector<float>> outputs_;  // by worker
 };
 
 }  // namespace
 
-LearningStepTime time_learning_step(int threads) {
+LearningStepTime time_learning_step(int threads, GemmFunction other) {
   const World world = load_one_world("paper:a");
   const std::vector<PaperFeatureEncoder> encoders = {PaperFeatureEncoder(world)};
   Rng rng(1);
-  const ReplayBuffer replay = random_replay(world, rng);
-  KernelLearner learner({}, rng);
-  Minibatch batch;
+  const PaperReplayBuffer replay = random_replay(world, rng);
+  PaperKernelLearner learner({}, rng);
+  PaperMinibatch batch;
   const auto step = [&] {
     sample_minibatch(replay, encoders, kBatchSize, rng, batch);
     learner.learn(batch, rng);
@@ -112,13 +109,15 @@ LearningStepTime time_learning_step(int threads) {
   set_threads(threads);
   std::vector<double> step_ms;
   std::vector<double> products_ms;
-  std::vector<double> sgemm_ms;
+  std::vector<double> other_ms;
   for (int round = 0; round < kRounds; ++round) {
     step_ms.push_back(time_ms(step));
     products_ms.push_back(time_ms([&] { replayed.run(own_gemm); }));
-    sgemm_ms.push_back(time_ms([&] { replayed.run(sgemm); }));
+    if (other != nullptr) other_ms.push_back(time_ms([&] { replayed.run(other); }));
   }
-  return {.step_ms = median(step_ms), .products_ms = median(products_ms), .sgemm_ms = median(sgemm_ms)};
+  LearningStepTime time{.step_ms = median(step_ms), .products_ms = median(products_ms), .other_products_ms = {}};
+  if (other != nullptr) time.other_products_ms = median(other_ms);
+  return time;
 }
 
 }  // namespace graphdrl

@@ -10,9 +10,16 @@
 namespace graphdrl {
 namespace {
 
+// First visits that are labelled: the nearest, and others at random (docs/explorer.md, "Training").
 constexpr std::size_t kNearestLabelled = 3;
 constexpr std::size_t kMostLabelled = 6;
 constexpr int kTeacherBranching = 8;  // twice as many cost twice as much and value hardly better
+
+// Columns of ExplorerBatch::visit_x, and what undoes their scale [explorer_features.h].
+constexpr int kVisitCost = 0;
+constexpr int kChangeOfPenalties = 1;
+constexpr float kCostScale = 8;
+constexpr float kPenaltyScale = 4;
 
 SearchStart search_start_of(const Lesson& walk) {
   SearchStart start{
@@ -31,6 +38,61 @@ int gain_by_search(const Lesson& walk, int width) {
   return visited_after(start, plan.walk) - static_cast<int>(before);
 }
 
+// The start of a random walk with `ratio` mean edges to spend for each valid node.
+Lesson begin_walk(const std::shared_ptr<LessonWorld>& at, NodeId start, double ratio) {
+  const World& world = at->world;
+  Lesson walk{.at = at,
+              .visited = std::vector<std::uint64_t>(words_for(world.graph().node_count())),
+              .position = start,
+              .spendable = spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
+              .scope = kExplorerScope,
+              .choice = 0,
+              .shortfall = {}};
+  visit(walk, {start, 0});
+  return walk;
+}
+
+// What the first visits of a state are worth by search, or kUnlabelled.
+std::vector<float> search_labels(const Lesson& walk, std::span<const FirstVisit> visits, double ceiling, int width,
+                                 Rng& rng) {
+  std::vector<float> shortfall(visits.size(), kUnlabelled);
+  std::vector<std::size_t> order(visits.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = kNearestLabelled; i + 1 < order.size(); ++i) {
+    std::swap(order[i], order[i + rng.below(static_cast<std::uint32_t>(order.size() - i))]);
+  }
+  if (order.size() > kMostLabelled) order.resize(kMostLabelled);
+  for (const std::size_t first : order) {
+    Lesson after = walk;
+    visit(after, visits[first]);
+    const int gain = 1 + gain_by_search(after, width);
+    shortfall[first] = static_cast<float>(ceiling - gain);
+  }
+  return shortfall;
+}
+
+// The first visit of least cost and change of penalties, as a beam ranks them.
+std::size_t best_by_rank(const ExplorerBatch& batch, std::size_t count) {
+  const auto rank = [&](std::size_t first) {
+    const float* const row = batch.visit_x.data() + first * kExplorerVisitFeatureCount;
+    return kCostScale * row[kVisitCost] + kPenaltyScale * row[kChangeOfPenalties];
+  };
+  std::size_t best = 0;
+  for (std::size_t first = 1; first < count; ++first) {
+    if (rank(first) < rank(best)) best = first;
+  }
+  return best;
+}
+
+// The least of all that are labelled. REQUIRES: the first of all is.
+std::size_t least_of(std::span<const float> shortfall) {
+  std::size_t least = 0;
+  for (std::size_t first = 0; first < shortfall.size(); ++first) {
+    if (shortfall[first] < shortfall[least]) least = first;
+  }
+  return least;
+}
+
 }  // namespace
 
 void visit(Lesson& walk, const FirstVisit& first) {
@@ -44,7 +106,7 @@ LessonWorld::LessonWorld(const WorldSpec& spec, std::uint64_t of_seed)
 
 std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerParameters& parameters,
                                  std::uint64_t seed) {
-  const auto at = std::make_shared<LessonWorld>(options.worlds[seed % options.worlds.size()], seed);
+  const auto at = std::make_shared<LessonWorld>(options.world_of(seed), seed);
   const World& world = at->world;
   Rng rng = at->rng;
   const auto chance = [&](double p) { return rng.uniform() < p; };
@@ -52,14 +114,7 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
   ExplorerGuide guide(SharedExplorer(std::shared_ptr<void>(), &parameters));
   const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
   const double ratio = options.least_budget + (options.most_budget - options.least_budget) * rng.uniform();
-  Lesson walk{.at = at,
-              .visited = std::vector<std::uint64_t>((static_cast<std::size_t>(world.graph().node_count()) + 63) / 64),
-              .position = start,
-              .spendable = spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
-              .scope = kExplorerScope,
-              .choice = 0,
-              .shortfall = {}};
-  visit(walk, {start, 0});
+  Lesson walk = begin_walk(at, start, ratio);
   if (chance(options.small_scope)) {
     walk.scope = options.least_scope +
                  static_cast<int>(rng.below(static_cast<std::uint32_t>(kExplorerScope - options.least_scope)));
@@ -77,41 +132,15 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
     Lesson lesson = walk;
     const bool kept = chance(share) && (visits.size() > 1 || options.teacher_width == 0);
     const bool taught = kept && options.teacher_width > 0;
-    if (taught) {
-      lesson.shortfall.assign(visits.size(), kUnlabelled);
-      std::vector<std::size_t> order(visits.size());
-      std::iota(order.begin(), order.end(), std::size_t{0});
-      // The nearest ones, and others drawn at random.
-      for (std::size_t i = kNearestLabelled; i + 1 < order.size(); ++i) {
-        std::swap(order[i], order[i + rng.below(static_cast<std::uint32_t>(order.size() - i))]);
-      }
-      if (order.size() > kMostLabelled) order.resize(kMostLabelled);
-      for (const std::size_t first : order) {
-        Lesson after = walk;
-        visit(after, visits[first]);
-        const int gain = 1 + gain_by_search(after, options.teacher_width);
-        lesson.shortfall[first] = static_cast<float>(batch.ceiling[0] - gain);
-      }
-    }
+    if (taught) lesson.shortfall = search_labels(walk, visits, batch.ceiling[0], options.teacher_width, rng);
     std::size_t choice = 0;
     if (chance(options.explore)) {
       choice = rng.below(static_cast<std::uint32_t>(visits.size()));
     } else if (by_network) {
       guide.score(batch, shortfall);
-      choice = std::min_element(shortfall.begin(), shortfall.end()) - shortfall.begin();
-    } else if (taught) {
-      for (std::size_t first = 0; first < visits.size(); ++first) {  // the first of all has a label
-        if (lesson.shortfall[first] < lesson.shortfall[choice]) choice = first;
-      }
+      choice = least_of(shortfall);
     } else {
-      const float* const x = batch.visit_x.data();  // cost and the change of penalties, as a beam ranks them
-      const auto rank = [&](std::size_t first) {
-        const float* const row = x + first * kExplorerVisitFeatureCount;
-        return 8 * row[0] + 4 * row[1];
-      };
-      for (std::size_t first = 1; first < visits.size(); ++first) {
-        if (rank(first) < rank(choice)) choice = first;
-      }
+      choice = taught ? least_of(lesson.shortfall) : best_by_rank(batch, visits.size());
     }
     lesson.choice = static_cast<int>(choice);
     if (kept) lessons.push_back(std::move(lesson));

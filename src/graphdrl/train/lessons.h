@@ -12,16 +12,19 @@
 
 namespace graphdrl {
 
+// The figures are those of docs/explorer.md, "Training".
 struct LessonOptions {
   std::vector<WorldSpec> worlds;  // drawn from with equal chances
-  int teacher_width;              // of the beam that values a first visit; 0 to value none
-  double lead;                    // chance of a walk to be led by the network's least shortfall, else by search
+  int teacher_width = 0;          // of the beam that values a first visit; 0 to value none
+  double lead = 0;                // chance of a walk to be led by the network's least shortfall, else by search
   double least_budget = 0.5;      // times valid nodes and mean cost
   double most_budget = 1.7;
   double small_scope = 0.25;  // chance of a walk to be seen through a smaller scope than the explorer's,
   int least_scope = 24;       // at least this
-  int states_per_walk = 6;    // asked for of each walk; states with a single first visit teach nothing
+  int states_per_walk = 6;    // asked for of each walk; about four teach something: others have a single first visit
   double explore = 0.15;      // chance of a random first visit on the way
+
+  const WorldSpec& world_of(std::uint64_t seed) const { return worlds[seed % worlds.size()]; }
 };
 
 inline constexpr float kUnlabelled = std::numeric_limits<float>::quiet_NaN();
@@ -36,6 +39,11 @@ struct LessonWorld {
   ExplorerEncoder encoder;
 };
 
+// How many words hold a bit per node.
+inline std::size_t words_for(NodeId nodes) {
+  return (static_cast<std::size_t>(nodes) + 63) / 64;
+}
+
 // One state and what its first visits are worth. Small: features are built when it is used.
 struct Lesson {
   std::shared_ptr<LessonWorld> at;
@@ -44,8 +52,7 @@ struct Lesson {
   double spendable;
   int scope;                     // nodes the network looks at
   int choice = 0;                // the first visit made, by its place among all, nearest first
-  std::vector<float> shortfall;  // by first visit; kUnlabelled for some where there are more than six, empty without a
-                                 // teacher
+  std::vector<float> shortfall;  // by first visit; kUnlabelled for some where there are many, empty without a teacher
 
   // Appends the state; gives its first visits, until the encoder's next call.
   std::span<const FirstVisit> append_to(ExplorerBatch& batch) const {

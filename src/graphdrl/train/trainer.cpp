@@ -6,213 +6,85 @@
 #include <chrono>
 #include <cmath>
 
-#include "graphdrl/base/error.h"
-#include "graphdrl/env/load_worlds.h"
-#include "graphdrl/planners/paper_policy.h"
-#include "graphdrl/train/epsilon_schedule.h"
-
 namespace graphdrl {
-namespace {
 
-// Throws Error where a world does not fit the options.
-void check_worlds(const std::vector<World>& worlds, const TrainOptions& options) {
-  for (const World& world : worlds) {
-    const double budget = episode_options(options, world).budget;
-    if (budget < 1 || budget > kMaxReplayBudget) {
-      throw Error({.what = "budget out of range for training",
-                   .expected = fmt::format("1 to {} steps", kMaxReplayBudget),
-                   .got = fmt::format("{:g}", budget),
-                   .where = world.name()});
-    }
-    if (options.start != kRandomStart) parse_start(world, options.start);
-  }
-}
-
-std::size_t largest(const std::vector<World>& worlds) {
-  NodeId nodes = 0;
-  for (const World& world : worlds) nodes = std::max(nodes, world.graph().node_count());
-  return static_cast<std::size_t>(nodes);
-}
-
-LearnerOptions learner_options(const TrainOptions& options) {
-  return {.double_dqn = options.algorithm == "double_dqn",
-          .discount = options.discount,
-          .learning_rate = options.learning_rate,
-          .soft_update = options.soft_update,
-          .dropout = options.dropout};
-}
-
-}  // namespace
-
-Trainer::Trainer(const TrainOptions& options, RunDirectory run, std::vector<World> worlds)
+Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from,
+                 const MakePaperLearner& make_learner)
     : options_(options),
       run_(std::move(run)),
-      worlds_(std::move(worlds)),
-      encoders_(worlds_.begin(), worlds_.end()),
       rng_(options.seed),
-      learner_(make_learner(options.device, learner_options(options), rng_)),
-      replay_(static_cast<std::size_t>(options.replay_capacity), largest(worlds_)) {
-  for (const World& world : worlds_) episodes_.emplace_back(world, episode_options(options_, world));
+      recipe_(make_recipe(options, rng_, from, make_learner)),
+      units_(recipe_->units()) {
+  if (from == nullptr) return;
+  progress_ = from->progress();
+  if (progress_.done > units_.count) {
+    from->fail(fmt::format("the checkpoint is not of this run: it has done more {}s than there are", units_.name));
+  }
+  recipe_->restore(*from, progress_);
+  rng_ = from->rng();
 }
 
-std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDirectory& run) {
+std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDirectory& run,
+                                        const MakePaperLearner& make_learner) {
   validate(options);
-  std::vector<World> worlds = load_worlds(options.maps);
-  check_worlds(worlds, options);
-  std::unique_ptr<Trainer> trainer(new Trainer(options, run, std::move(worlds)));
+  std::unique_ptr<Trainer> trainer(new Trainer(options, run, nullptr, make_learner));
   run.create();
   write_config(run.config(), options);
   trainer->save();
   return trainer;
 }
 
-std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run) {
+std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const MakePaperLearner& make_learner) {
   const TrainOptions options = read_config(run.config());
-  const Safetensors checkpoint = Safetensors::read(run.checkpoint());
-  std::vector<World> worlds = unpack_worlds(checkpoint);
-  check_worlds(worlds, options);
-  std::unique_ptr<Trainer> trainer(new Trainer(options, run, std::move(worlds)));
-  trainer->restore(checkpoint);
-  return trainer;
+  const Checkpoint checkpoint = Checkpoint::read(run.checkpoint(), options.preset);
+  return std::unique_ptr<Trainer>(new Trainer(options, run, &checkpoint, make_learner));
 }
 
 bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
-  const std::int64_t steps_before = progress_.steps;
-  const double elapsed_before_s = progress_.elapsed_s;
+  const TrainingProgress before = progress_;
   const auto start = std::chrono::steady_clock::now();
-  const auto update_clock = [&] {
-    const std::chrono::duration<double> session = std::chrono::steady_clock::now() - start;
-    progress_.elapsed_s = elapsed_before_s + session.count();
+  const auto session_s = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  MetricsFile metrics(run_.metrics(), "episode", progress_.episode);
-  EventWriter events(run_.path(), progress_.episode + 1);
-  while (progress_.episode < options_.episodes) {  // for episode e = 1 … E
-    if (!in_episode_) begin_episode();             //   construct the initial state s_0
-    Episode& episode = episodes_[world_];
-    while (!episode.done() && !stop()) {   //   for step t = 1 … T
-      const int action = choose_action();  //     select a_t following an epsilon-strategy
-      const NodeId from = episode.position();
-      visits_before_ = episode.visits();
-      const StepResult step = episode.step(action);  //     receive r_t and move to s_{t+1}
-      remember(action, step, from);                  //     store (s_t, a_t, r_t, s_{t+1}) in M
-      learn();                                       //     sample B, update θ, soft update θ'
-    }
-    if (!episode.done()) break;
-    end_episode();
-    const bool last = progress_.episode == options_.episodes;
-    const MetricsLine line = window_means();
-    const double session_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    display.show(progress_.episode, options_.episodes,
-                 fmt::format("coverage {:.1f} %  reward {:.2f}  loss {}  eps {:.3f}  {:.0f} steps/s", line.coverage,
-                             line.reward, std::isnan(line.loss) ? "-" : fmt::format("{:.4f}", line.loss), line.epsilon,
-                             static_cast<double>(progress_.steps - steps_before) / std::max(session_s, 1e-9)),
-                 last);
-    if (progress_.window_episodes == kLogEvery || last) log(line, metrics, events);
-    if (progress_.episode % options_.checkpoint_every == 0 && !last) {
-      update_clock();
-      save();
-    }
+  MetricsFile metrics(run_.metrics(), units_.name, progress_.done);
+  EventWriter events(run_.path(), progress_.done + 1);
+  bool stopped = false;
+  while (!finished() && !stopped && recipe_->run_unit(progress_, stop)) {
+    ++progress_.done;
+    stopped = stop();
+    progress_.elapsed_s = before.elapsed_s + session_s();
+    const double rate = static_cast<double>(progress_.samples - before.samples) / std::max(session_s(), 1e-9);
+    display.show(progress_.done, units_.count,
+                 fmt::format("{}  {:.0f} {}/s", recipe_->status(progress_), rate, units_.samples), finished());
+    log(metrics, events);
+    if (!finished() && !stopped && progress_.done % options_.checkpoint_every == 0) save();
   }
   display.finish();
-  update_clock();
+  progress_.elapsed_s = before.elapsed_s + session_s();
   save();
-  return progress_.episode == options_.episodes;
+  return finished();
 }
 
-void Trainer::begin_episode() {
-  const int world = worlds_.size() == 1 ? 0 : static_cast<int>(rng_.below(static_cast<std::uint32_t>(worlds_.size())));
-  if (options_.start != kRandomStart) {
-    begin_episode_at(world, parse_start(worlds_[world], options_.start));
-    return;
+void Trainer::log(MetricsFile& metrics, EventWriter& events) {
+  const std::vector<Metric> taken = recipe_->take_metrics(progress_);
+  if (taken.empty()) return;
+  std::vector<Scalar> all;
+  std::vector<Scalar> curves;
+  for (const Metric& metric : taken) {
+    all.push_back({metric.name, metric.value});
+    if (metric.curve && !std::isnan(metric.value)) curves.push_back({metric.name, metric.value});
   }
-  const auto nodes = worlds_[world].valid_nodes();
-  begin_episode_at(world, nodes[rng_.below(static_cast<std::uint32_t>(nodes.size()))]);
+  metrics.write(progress_.done, all);
+  events.write(progress_.done, curves);
 }
 
-void Trainer::begin_episode_at(int world, NodeId start) {
-  world_ = world;
-  episodes_[world].reset(start);
-  features_.resize(static_cast<std::size_t>(worlds_[world].graph().node_count()) * kPaperFeatureCount);
-  encoders_[world].begin(start, features_);
-  actions_.clear();
-  episode_reward_ = 0;
-  in_episode_ = true;
-}
-
-int Trainer::choose_action() {
-  if (rng_.uniform() < epsilon_at(progress_.episode, options_.episodes)) {
-    return static_cast<int>(rng_.below(kActionCount));
-  }
-  std::array<float, kActionCount> q{};
-  single_.clear();
-  single_.add(worlds_[world_].graph());
-  learner_->q_values(single_, features_, q);
-  return argmax(q);
-}
-
-void Trainer::remember(int action, const StepResult& step, NodeId from) {
-  const Episode& episode = episodes_[world_];
-  replay_.push({.world = world_,
-                .position = from,
-                .action = action,
-                .next_position = episode.position(),
-                .reward = static_cast<float>(step.reward),
-                .terminal = episode.terminal()},
-               visits_before_);
-  encoders_[world_].update(from, episode.position(), step, features_);
-  actions_.push_back(action);
-  episode_reward_ += step.reward;
-  ++progress_.steps;
-}
-
-void Trainer::learn() {
-  if (replay_.size() <= static_cast<std::size_t>(options_.batch_size)) return;
-  sample_minibatch(replay_, encoders_, options_.batch_size, rng_, minibatch_);
-  const double loss = learner_->learn(minibatch_, rng_);
-  if (!std::isfinite(loss)) {
-    throw std::runtime_error(
-        fmt::format("the loss is not finite at step {}: try a smaller --learning-rate", progress_.steps));
-  }
-  progress_.window_loss += loss;
-  ++progress_.window_losses;
-}
-
-void Trainer::end_episode() {
-  const Episode& episode = episodes_[world_];
-  ++progress_.episode;
-  ++progress_.window_episodes;
-  progress_.window_visited += episode.visited_count();
-  progress_.window_coverage += 100.0 * episode.coverage();
-  progress_.window_reward += episode_reward_;
-  in_episode_ = false;
-}
-
-MetricsLine Trainer::window_means() const {
-  const auto episodes = static_cast<double>(progress_.window_episodes);
-  return {
-      .episode = progress_.episode,
-      .steps = progress_.steps,
-      .epsilon = epsilon_at(progress_.episode - 1, options_.episodes),
-      .loss = progress_.window_losses > 0 ? progress_.window_loss / static_cast<double>(progress_.window_losses) : NAN,
-      .visited_nodes = progress_.window_visited / episodes,
-      .coverage = progress_.window_coverage / episodes,
-      .reward = progress_.window_reward / episodes};
-}
-
-void Trainer::log(const MetricsLine& line, MetricsFile& metrics, EventWriter& events) {
-  metrics.write(line.episode, std::vector<Scalar>{{"steps", static_cast<double>(line.steps)},
-                                                  {"epsilon", line.epsilon},
-                                                  {"loss", line.loss},
-                                                  {"visited_nodes", line.visited_nodes},
-                                                  {"coverage", line.coverage},
-                                                  {"reward", line.reward}});
-  std::vector<Scalar> scalars = {
-      {"epsilon", line.epsilon}, {"visited_nodes", line.visited_nodes}, {"reward", line.reward}};
-  if (!std::isnan(line.loss)) scalars.push_back({"loss", line.loss});
-  events.write(line.episode, scalars);
-  progress_.window_episodes = 0;
-  progress_.window_losses = 0;
-  progress_.window_loss = progress_.window_visited = progress_.window_coverage = progress_.window_reward = 0;
+void Trainer::save() {
+  CheckpointWriter checkpoint(options_.preset);
+  recipe_->save(checkpoint);
+  checkpoint.add(progress_);
+  checkpoint.add(rng_);
+  checkpoint.write(run_.checkpoint());
+  recipe_->write_policy(run_.policy());
 }
 
 }  // namespace graphdrl

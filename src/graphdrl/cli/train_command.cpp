@@ -1,0 +1,213 @@
+#include "graphdrl/cli/train_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <functional>
+#include <memory>
+#include <sstream>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/train/options.h"
+#include "graphdrl/train/shallow_json.h"
+#include "graphdrl/train/trainer.h"
+
+namespace graphdrl {
+namespace {
+
+std::atomic<int> stop_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler writes it");
+
+extern "C" void remember_signal(int signal) {
+  stop_signal = signal;
+}
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = remember_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
+}
+
+// Reads --config files: a run's config.json, or CLI11's own format (name = value).
+class ConfigReader : public CLI::ConfigTOML {
+ public:
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::stringstream content;
+    content << input.rdbuf();
+    if ((content >> std::ws).peek() != '{') return from_lines(content);
+    const Json json = parse_shallow_json(content.str(), "--config");
+    if (!json.is_object()) throw Error({.what = "the configuration is not valid JSON", .where = "--config"});
+    std::vector<CLI::ConfigItem> result;
+    for (const auto& [key, value] : json.items()) {
+      CLI::ConfigItem item;
+      item.name = flag_of(key).substr(2);
+      for (const Json& one : value.is_array() ? value : Json::array({value})) {
+        item.inputs.push_back(one.is_string() ? one.get<std::string>() : one.dump());
+      }
+      result.push_back(std::move(item));
+    }
+    return result;
+  }
+
+ private:
+  // CLI11's messages repeat a bad line, however long it is.
+  std::vector<CLI::ConfigItem> from_lines(std::istream& content) const {
+    try {
+      return CLI::ConfigTOML::from_config(content);
+    } catch (const CLI::ParseError& error) {
+      throw Error({.what = "the configuration cannot be read",
+                   .expected = "JSON, or lines name = value",
+                   .got = in_quotes(error.what(), 100),
+                   .where = "--config"});
+    }
+  }
+};
+
+struct TrainCommand {
+  TrainOptions given;  // by flags and config files; else the default of the explorer, or of the paper's own options
+  std::string out;
+  std::string resume;
+  bool json = false;
+};
+
+// The flags of the options that a training has, and whose they are.
+class OptionFlags {
+ public:
+  OptionFlags(CLI::App& app, TrainOptions& given) : given_(given) {
+    for_each_option([&](const auto& option) { add(app, option); });
+    preset_ = app.get_option("--preset");
+  }
+
+  // The options as given, with the defaults of their preset. An option that only the preset paper has chooses that
+  // preset, where none is named. Throws Error on options of another one.
+  TrainOptions resolve() const {
+    const bool paper_by_option = preset_->count() == 0 && first_given(of_paper_) != nullptr;
+    TrainOptions options = default_options(paper_by_option ? kPaperPreset : given_.preset);
+    const bool paper = options.preset == kPaperPreset;
+    if (const CLI::Option* const other = first_given(paper ? of_explorer_ : of_paper_)) {
+      throw Error({.what = fmt::format("{} is no option of the preset {}", other->get_name(), options.preset),
+                   .expected = std::string("--preset ") + (paper ? kExplorerPreset : kPaperPreset)});
+    }
+    for (const auto& copy : copies_) copy(options);
+    return options;
+  }
+
+ private:
+  template <typename T>
+  void add(CLI::App& app, const OptionField<T>& option) {
+    const auto& [explorer, paper] = option.defaults;
+    T& value = given_.*option.member;
+    value = explorer ? *explorer : *paper;
+    CLI::Option* const flag = add_flag(app, flag_of(option.key), value, option.help)->capture_default_str();
+    if (!explorer) of_paper_.push_back(flag->group("Of the preset paper"));
+    if (!paper) of_explorer_.push_back(flag->group("Of the preset explorer"));
+    if (explorer && paper && *explorer != *paper && flag->get_name() != "--preset") {
+      flag->description(fmt::format("{} (paper: {})", flag->get_description(), Json(*paper).dump()));
+    }
+    copies_.push_back([flag, &value, member = option.member](TrainOptions& options) {
+      if (flag->count() > 0) options.*member = value;
+    });
+  }
+
+  static CLI::Option* add_flag(CLI::App& app, const std::string& name, std::uint64_t& value, const char* help) {
+    return app.add_option(name, value, help)->check(CLI::NonNegativeNumber);
+  }
+  static CLI::Option* add_flag(CLI::App& app, const std::string& name, bool& value, const char* help) {
+    return app.add_flag(name, value, help);
+  }
+  template <typename T>
+  static CLI::Option* add_flag(CLI::App& app, const std::string& name, T& value, const char* help) {
+    return app.add_option(name, value, help);
+  }
+
+  static const CLI::Option* first_given(const std::vector<CLI::Option*>& options) {
+    const auto found =
+        std::find_if(options.begin(), options.end(), [](const CLI::Option* option) { return option->count() > 0; });
+    return found == options.end() ? nullptr : *found;
+  }
+
+  TrainOptions& given_;
+  const CLI::Option* preset_ = nullptr;
+  std::vector<CLI::Option*> of_explorer_;
+  std::vector<CLI::Option*> of_paper_;
+  std::vector<std::function<void(TrainOptions&)>> copies_;  // of what was given
+};
+
+// Trains to the end, or until a signal comes.
+void train(Trainer& trainer, bool json) {
+  const std::string run = trainer.run_directory().path().string();
+  const TrainingProgress& progress = trainer.progress();
+  const Recipe::Units& units = trainer.units();
+  catch_signals();
+  ProgressDisplay display(stderr, units.name, progress.done);
+  if (!trainer.run([] { return stop_signal != 0; }, display)) {
+    print_diagnostic(
+        fmt::format("Stopped after {} of {} {}s; everything is saved. To go on:\n  graphdrl train --resume {}\n",
+                    progress.done, units.count, units.name, run));
+    throw CLI::RuntimeError(128 + stop_signal);
+  }
+  const std::string policy = trainer.run_directory().policy().string();
+  if (json) {
+    print_json({{"run", run},
+                {units.name + 's', progress.done},
+                {units.samples, progress.samples},
+                {"elapsed_s", progress.elapsed_s},
+                {"policy", policy}});
+  } else {
+    print_text(fmt::format("Trained {} {}s, {} {}, in {:.0f} s. The policy: {}\n", progress.done, units.name,
+                           progress.samples, units.samples, progress.elapsed_s, policy));
+  }
+}
+
+// Throws Error where an option of a new run stands beside --resume.
+void refuse_beside_resume(const std::vector<CLI::Option*>& options, const std::string& run) {
+  for (const CLI::Option* const option : options) {
+    if (option->count() == 0) continue;
+    throw Error({.what = option->get_name() + " does not go with --resume",
+                 .expected = "the options that the run was started with",
+                 .where = run});
+  }
+}
+
+}  // namespace
+
+int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner) {
+  CLI::App app{
+      "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
+      "graphdrl train"};
+  TrainCommand command;
+  const OptionFlags flags(app, command.given);
+  app.add_option("--out", command.out, "The run directory, new (default: runs/PRESET)")
+      ->type_name("RUN")
+      ->check(not_empty());
+  const std::vector<CLI::Option*> of_new_runs =
+      app.get_options([](CLI::Option* option) { return option->get_name() != "--help"; });
+  const CLI::Option* const resume =
+      app.add_option("--resume", command.resume, "Go on with a run; takes none of the options above")
+          ->type_name("RUN")
+          ->check(not_empty());
+  app.add_flag("--json", command.json, "Print one JSON document when done");
+  add_threads_option(app);
+  app.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
+  app.config_formatter(std::make_shared<ConfigReader>());
+  app.allow_config_extras(CLI::config_extras_mode::error);
+  app.callback([&] {
+    if (resume->count() > 0) {
+      refuse_beside_resume(of_new_runs, command.resume);
+      return train(*Trainer::resume(RunDirectory(command.resume), make_learner), command.json);
+    }
+    const TrainOptions options = flags.resolve();
+    const RunDirectory run(command.out.empty() ? "runs/" + options.preset : command.out);
+    train(*Trainer::start(options, run, make_learner), command.json);
+  });
+  std::vector<const char*> argv = {"graphdrl train"};
+  for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+  return run_program(app, static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,218 @@
+#include "graphdrl/train/options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/env/budget.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/train/shallow_json.h"
+
+namespace graphdrl {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using O = TrainOptions;
+
+constexpr std::int64_t kMany = 1'000'000'000;
+
+template <typename T>
+void check_range(const std::string& flag, T value, T low, T high) {
+  if (value >= low && value <= high) return;
+  throw Error({.what = "value out of range",
+               .expected = fmt::format("{} to {}", low, high),
+               .got = fmt::format("{}", value),
+               .where = flag});
+}
+
+// What a value may be.
+template <typename T>
+auto from_to(T low, T high) {
+  return [low, high](const std::string& flag, const T& value) { check_range(flag, value, low, high); };
+}
+
+auto whole(std::int64_t low, std::int64_t high) {
+  return from_to(low, high);
+}
+
+auto one_of(std::vector<std::string> choices) {
+  return [choices = std::move(choices)](const std::string& flag, const std::string& value) {
+    if (std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+    throw Error({.what = "bad value",
+                 .expected = fmt::format("{}", fmt::join(choices, " or ")),
+                 .got = in_quotes(value),
+                 .where = flag});
+  };
+}
+
+constexpr auto anything = [](const std::string&, const auto&) {};
+
+template <typename T, typename Check>
+AnyOptionField field(const char* key, T O::*member, const Defaults<std::type_identity_t<T>>& defaults,
+                     const Check& check, const char* help) {
+  return OptionField<T>{.key = key, .member = member, .defaults = defaults, .check = check, .help = help};
+}
+
+// The explorer's defaults train for half an hour on two cores (docs/explorer.md). The paper's are the paper's numbers
+// (section 2.2), and its author's code where the paper is silent (docs/paper.md).
+std::vector<AnyOptionField> shared_fields() {
+  return {
+      field("preset", &O::preset, {.explorer = kExplorerPreset, .paper = kPaperPreset},
+            one_of({kExplorerPreset, kPaperPreset}),
+            "What to train: explorer, on random worlds of every kind, or paper (also chosen by its own options)"),
+      field("seed", &O::seed, {.explorer = 1, .paper = 1}, anything,
+            "The same seed gives the same policy file, byte for byte (same build and machine; on the CPU)"),
+      field("batch_size", &O::batch_size, {.explorer = 64, .paper = 32}, whole(1, 65'536),
+            "States or transitions per learning step"),
+      field("replay_capacity", &O::replay_capacity, {.explorer = 200'000, .paper = 100'000}, whole(1, kMany),
+            "States or transitions remembered"),
+      field("learning_rate", &O::learning_rate, {.explorer = 2e-3, .paper = 1e-3}, from_to(0.0, 1e3),
+            "Adam's; that of the explorer falls to a fiftieth"),
+      field("checkpoint_every", &O::checkpoint_every, {.explorer = 20, .paper = 100}, whole(1, kMany),
+            "Rounds or episodes between checkpoints"),
+  };
+}
+
+std::vector<AnyOptionField> explorer_fields() {
+  return {
+      field("rounds", &O::rounds, {.explorer = 210}, whole(1, kMany),
+            "Rounds of walks and updates; the learning rate falls over all of them"),
+      field("largest", &O::largest, {.explorer = 20}, whole(5, 20),
+            "Largest side of training grids (4 to 11, 13, 15, 16, 20); graphs have up to seven times as many nodes"),
+      field("teacher", &O::teacher, {.explorer = "search"}, one_of({"search", "double_dqn"}),
+            "Where values come from: search, or double_dqn, bootstrapped from the network's own"),
+      field("teacher_width", &O::teacher_width, {.explorer = 24}, whole(1, 100'000),
+            "Width of the beam that values a first visit"),
+      field("ranking", &O::ranking, {.explorer = 1}, from_to(0.0, 1e3),
+            "Weight of the loss on which first visit is best, beside that on values"),
+      field("lead", &O::lead, {.explorer = 0.6}, from_to(0.0, 1.0), "Share of walks that the network leads"),
+      field("walks", &O::walks, {.explorer = 512}, whole(1, 1'000'000), "Random walks per round"),
+      field("updates", &O::updates, {.explorer = 400}, whole(1, 1'000'000), "Learning steps per round"),
+  };
+}
+
+std::vector<AnyOptionField> paper_fields() {
+  return {
+      field("maps", &O::maps, {.paper = {{"paper:a"}}}, anything,
+            "Maps to train on, drawn anew for every episode: paper:a, a file, a folder"),
+      field("episodes", &O::episodes, {.paper = 10'000}, whole(1, kMany),
+            "Episodes; epsilon's schedule spans all of them"),
+      field(
+          "budget", &O::budget, {.paper = "25"},
+          [](const std::string&, const std::string& value) { Budget::parse(value); },
+          "Steps per episode, or a multiple of the valid nodes, as 1.1x"),
+      field("start", &O::start, {.paper = kRandomStart}, anything,
+            "Where episodes start: random, a node id, or row,col"),
+      field("reward", &O::reward, {.paper = "visit_penalty"}, one_of({"visit_penalty", "coverage_gain"}),
+            "visit_penalty (paper, eq. 3) or coverage_gain (eq. 2)"),
+      field("end_at_full_coverage", &O::end_at_full_coverage, {.paper = false}, anything,
+            "End an episode at full coverage, with a bonus of 1"),
+      field("punish_blocked_by_visits", &O::punish_blocked_by_visits, {.paper = false}, anything,
+            "Punish a blocked move by a further 0.1 per visit of the node (with visit_penalty)"),
+      field("algorithm", &O::algorithm, {.paper = "dqn"}, one_of({"dqn", "double_dqn"}), "dqn or double_dqn"),
+      field("discount", &O::discount, {.paper = 0.99}, from_to(0.0, 1.0),
+            "Of the next state's value; the paper's alpha"),
+      field("soft_update", &O::soft_update, {.paper = 1e-3}, from_to(0.0, 1.0),
+            "Share of the online weights in the target's, per step; the paper's beta"),
+      field("dropout", &O::dropout, {.paper = 0.5}, from_to(0.0, 0.99), "Probability to drop a hidden value"),
+      field("device", &O::device, {.paper = "cpu"}, one_of({"cpu", "cuda"}),
+            "cpu or cuda; cuda needs graphdrl-train and a LibTorch that has it"),
+  };
+}
+
+bool has_type_of(const Json& json, const std::string&) {
+  return json.is_string();
+}
+bool has_type_of(const Json& json, bool) {
+  return json.is_boolean();
+}
+bool has_type_of(const Json& json, std::int64_t) {
+  return json.is_number_integer();
+}
+bool has_type_of(const Json& json, std::uint64_t) {
+  return json.is_number_unsigned();
+}
+bool has_type_of(const Json& json, double) {
+  return json.is_number();
+}
+bool has_type_of(const Json& json, const std::vector<std::string>&) {
+  return json.is_array() && std::all_of(json.begin(), json.end(), [](const Json& item) { return item.is_string(); });
+}
+
+}  // namespace
+
+const std::vector<AnyOptionField>& option_fields() {
+  static const std::vector<AnyOptionField> fields = [] {
+    std::vector<AnyOptionField> all = shared_fields();
+    for (const auto& more : {explorer_fields(), paper_fields()}) all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }();
+  return fields;
+}
+
+std::string flag_of(const std::string& key) {
+  std::string flag = "--" + key;
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+TrainOptions default_options(const std::string& preset) {
+  one_of({kExplorerPreset, kPaperPreset})("--preset", preset);
+  TrainOptions options;
+  for_each_option([&](const auto& option) {
+    if (const auto& value = option.defaults.of(preset)) options.*option.member = *value;
+  });
+  return options;
+}
+
+void validate(const TrainOptions& options) {
+  for_each_option([&](const auto& option) {
+    if (option.defaults.of(options.preset)) option.check(flag_of(option.key), options.*option.member);
+  });
+  // The paper learns once there are more transitions than a batch has.
+  const bool paper = options.preset == kPaperPreset;
+  check_range("--replay-capacity", options.replay_capacity, options.batch_size + (paper ? 1 : 0), kMany);
+  if (!paper) return;
+  if (options.punish_blocked_by_visits && options.reward != "visit_penalty") {
+    throw Error({.what = "only the reward visit_penalty punishes anything", .where = "--punish-blocked-by-visits"});
+  }
+  if (options.maps.empty()) throw Error({.what = "no maps to train on", .where = "--maps"});
+}
+
+void write_config(const std::filesystem::path& path, const TrainOptions& options) {
+  Json json;
+  for_each_option([&](const auto& option) {
+    if (option.defaults.of(options.preset)) json[option.key] = options.*option.member;
+  });
+  write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+TrainOptions read_config(const std::filesystem::path& path) {
+  const std::string source = path.string();
+  const Json json = parse_shallow_json(read_file(path), source);
+  if (!json.is_object()) throw Error({.what = "not a run's configuration", .where = source});
+  std::size_t known = 0;
+  const auto read = [&](const char* key, auto& value) {
+    if (!json.contains(key)) throw Error({.what = "missing key " + in_quotes(key), .where = source});
+    const Json& found = json[key];
+    if (!has_type_of(found, value)) {
+      throw Error({.what = "value of the wrong type", .got = in_quotes(found.dump()), .where = source + ": " + key});
+    }
+    found.get_to(value);
+    ++known;
+  };
+  std::string preset;
+  read("preset", preset);
+  TrainOptions options = default_options(preset);
+  known = 0;
+  for_each_option([&](const auto& option) {
+    if (option.defaults.of(preset)) read(option.key, options.*option.member);
+  });
+  if (known != json.size()) throw Error({.what = "a key that no option has", .where = source});
+  validate(options);
+  return options;
+}
+
+}  // namespace graphdrl

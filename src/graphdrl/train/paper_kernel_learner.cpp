@@ -1,0 +1,73 @@
+#include "graphdrl/train/paper_kernel_learner.h"
+
+#include <algorithm>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/train/paper_td_target.h"
+
+namespace graphdrl {
+
+PaperKernelLearner::PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng)
+    : options_(options),
+      online_(PaperParameters(rng)),
+      target_(online_.parameters()),
+      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {}
+
+double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::span<const float> keep_scale) {
+  const int graphs = batch.graphs.graph_count();
+  next_q_.resize(static_cast<std::size_t>(graphs) * kActionCount);
+  target_.q_values(batch.graphs, batch.next_x, next_q_);
+  TdBatch td{.rewards = batch.rewards, .terminal = batch.terminal, .next_q = next_q_, .chooser = next_q_};
+  if (options_.double_dqn) {
+    next_online_.resize(next_q_.size());
+    online_.q_values(batch.graphs, batch.next_x, next_online_);
+    td.chooser = next_online_;
+  }
+  const std::vector<float> targets = td_targets(td, options_.discount);
+
+  q_.resize(next_q_.size());
+  online_.forward_train(batch.graphs, batch.x, keep_scale, q_);
+  double loss = 0;  // L(θ) [paper, eq. 5], a mean of squares
+  for (int g = 0; g < graphs; ++g) {
+    float* const row = q_.data() + static_cast<std::ptrdiff_t>(g) * kActionCount;
+    const std::int64_t action = batch.actions[g];
+    const float error = row[action] - targets[g];
+    loss += double{error} * error / graphs;
+    std::fill_n(row, kActionCount, 0.0f);
+    row[action] = 2 * error / static_cast<float>(graphs);
+  }
+  online_.backward(batch.graphs, keep_scale, q_);
+  return loss;
+}
+
+double PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
+  const double loss =
+      compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng));
+  const std::size_t trainable = PaperParameters::trainable_count();
+  const std::span<float> values = online_.parameters().values();
+  adam_.step(online_.gradients().values().first(trainable), values.first(trainable));
+  soft_update(values, options_.soft_update, target_.parameters().values());
+  online_.update();
+  target_.update();
+  return loss;
+}
+
+PaperState PaperKernelLearner::state() const {
+  return {.online = online_.parameters(), .target = target_.parameters(), .adam = adam_.state()};
+}
+
+void PaperKernelLearner::set_state(const PaperState& state) {
+  online_.parameters() = state.online;
+  target_.parameters() = state.target;
+  adam_.set_state(state.adam);
+  online_.update();
+  target_.update();
+}
+
+std::unique_ptr<PaperLearner> make_paper_cpu_learner(const std::string& device, const PaperLearnerOptions& options,
+                                                     Rng& rng) {
+  if (device == "cpu") return std::make_unique<PaperKernelLearner>(options, rng);
+  throw Error({.what = "this program trains on the CPU alone", .expected = "cpu", .got = device, .where = "--device"});
+}
+
+}  // namespace graphdrl

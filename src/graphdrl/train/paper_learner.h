@@ -1,0 +1,52 @@
+// One learning step of DQN: targets, loss, Adam, soft update [paper, section 2 and Algorithm 1, lines 9 to 11], as the
+// recipe sees it. PaperKernelLearner does it with the kernels of nn/ on the CPU, PaperDeviceLearner (train/torch/) with
+// LibTorch's operators on any device it has.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/nn/paper_network.h"
+#include "graphdrl/train/checkpoint.h"
+#include "graphdrl/train/paper_minibatch.h"
+
+namespace graphdrl {
+
+struct PaperLearnerOptions {
+  bool double_dqn = false;
+  double discount = 0.99;       // alpha
+  double learning_rate = 1e-3;  // Adam's
+  double soft_update = 1e-3;    // beta
+  double dropout = 0.5;
+};
+
+// The same whatever device the learner runs on.
+using PaperState = LearnedState<PaperParameters>;
+
+class PaperLearner {
+ public:
+  virtual ~PaperLearner() = default;
+
+  // One step; gives the loss before it. `rng` draws the dropout.
+  virtual double learn(const PaperMinibatch& batch, Rng& rng) = 0;
+
+  // The online network in eval mode. x: [N, F], q: [B, A].
+  virtual void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) = 0;
+
+  virtual PaperState state() const = 0;
+  virtual void set_state(const PaperState& state) = 0;
+};
+
+// Makes a learner on a device by its name, "cpu" or "cuda". It initialises the online network from rng and copies it to
+// the target. Throws Error where there is no such device.
+using MakePaperLearner =
+    std::function<std::unique_ptr<PaperLearner>(const std::string& device, const PaperLearnerOptions&, Rng& rng)>;
+
+// The one that knows the CPU alone.
+std::unique_ptr<PaperLearner> make_paper_cpu_learner(const std::string& device, const PaperLearnerOptions& options,
+                                                     Rng& rng);
+
+}  // namespace graphdrl

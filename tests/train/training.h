@@ -1,0 +1,81 @@
+// Short trainings, for tests of what all of them share.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "graphdrl/io/file.h"
+#include "graphdrl/train/trainer.h"
+#include "support.h"
+
+namespace graphdrl {
+
+// Of six episodes.
+inline TrainOptions short_paper() {
+  TrainOptions options = default_options(kPaperPreset);
+  options.maps = {"paper:a", "paper:h"};
+  options.episodes = 6;
+  options.budget = "12";
+  options.batch_size = 8;
+  options.replay_capacity = 40;  // wraps around
+  options.checkpoint_every = 2;
+  return options;
+}
+
+// Of four rounds.
+inline TrainOptions short_explorer() {
+  TrainOptions options = default_options(kExplorerPreset);
+  options.rounds = 4;
+  options.largest = 5;
+  options.walks = 24;
+  options.updates = 6;
+  options.batch_size = 8;
+  options.replay_capacity = 50;  // wraps around
+  options.teacher_width = 4;
+  options.checkpoint_every = 1;
+  return options;
+}
+
+// Trains without a word until `stop` says so; gives whether the training is finished.
+inline bool train(
+    Trainer& trainer, const std::function<bool()>& stop = [] { return false; }) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere(std::fopen("/dev/null", "w"), std::fclose);
+  ProgressDisplay display(nowhere.get(), trainer.units().name, 0);
+  return trainer.run(stop, display);
+}
+
+// What must not depend on threads or interruptions.
+struct Bytes {
+  std::string policy;
+  std::string metrics;
+
+  friend bool operator==(const Bytes&, const Bytes&) = default;
+};
+
+inline Bytes bytes_of(const RunDirectory& run) {
+  return {read_file(run.policy()), read_file(run.metrics())};
+}
+
+// A whole training in a new folder.
+inline Bytes train_in(const std::filesystem::path& path, const TrainOptions& options) {
+  const RunDirectory run(path);
+  EXPECT_TRUE(train(*Trainer::start(options, run)));
+  return bytes_of(run);
+}
+
+// Overwrites an element of an array of a safetensors file's content.
+template <typename T>
+std::string with_element(std::string content, const std::string& name, std::size_t index, T value) {
+  const Safetensors file = Safetensors::parse(content, "whole");
+  const std::size_t data = content.size() - file.entries().back().end;
+  for (const Safetensors::Entry& entry : file.entries()) {
+    if (entry.name == name)
+      content.replace(data + entry.begin + index * sizeof value, sizeof value, reinterpret_cast<const char*>(&value),
+                      sizeof value);
+  }
+  return content;
+}
+
+}  // namespace graphdrl
