@@ -10,6 +10,7 @@ import numpy
 import pytest
 
 BIN = pathlib.Path(os.environ["GRAPHDRL_BIN"])
+WITH_TORCH = (BIN / "graphdrl-train").exists()  # the build has LibTorch, and OpenBLAS with it
 DTYPES = {"F32": "<f4", "F64": "<f8", "I32": "<i4", "I64": "<i8", "U16": "<u2", "U64": "<u8"}
 
 
