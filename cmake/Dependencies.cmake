@@ -15,7 +15,8 @@ if(GRAPHDRL_TORCH)
   find_library(OPENBLAS_LIBRARY openblas PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/openblas-openmp
     NO_DEFAULT_PATH)
   if(NOT OPENBLAS_LIBRARY)
-    message(FATAL_ERROR "OpenBLAS's OpenMP build not found: install libopenblas-openmp-dev (scripts/setup --torch does)")
+    message(FATAL_ERROR
+      "OpenBLAS's OpenMP build not found: install libopenblas-openmp-dev (scripts/setup --torch does)")
   endif()
   get_filename_component(OPENBLAS_DIR ${OPENBLAS_LIBRARY} DIRECTORY)
   add_library(graphdrl_blas INTERFACE)

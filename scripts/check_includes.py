@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails on an include against the order of the modules, which ARCHITECTURE.md gives, and on LibTorch outside train/torch/."""
+"""Fails on an include against ARCHITECTURE.md's order of the modules, and on LibTorch outside train/torch/."""
 
 import pathlib
 import re

@@ -27,44 +27,51 @@ void disturb(PaperQNetwork& network, Rng& rng) {
   network.update();
 }
 
-struct Edges {
+struct Probe {
+  PaperMinibatch batch;
+  // The batch's edges, and where each graph's nodes begin.
   std::vector<std::int64_t> from;
   std::vector<std::int64_t> to;
+  std::vector<std::int64_t> first_nodes = {0};
 };
+
+// Adds a random transition; `encoder` is that of its world.
+void add_transition(const PaperFeatureEncoder& encoder, bool terminal, Rng& rng, Probe& probe) {
+  const World& world = encoder.world();
+  PaperMinibatch& batch = probe.batch;
+  Episode episode(world, {.budget = 40, .end_at_full_coverage = true});
+  episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
+  for (std::uint32_t steps = rng.below(25); steps > 0; --steps) episode.step(static_cast<int>(rng.below(4)));
+  const std::size_t row = batch.x.size();
+  const std::size_t size = episode.visits().size() * kPaperFeatureCount;
+  batch.x.resize(row + size);
+  batch.next_x.resize(row + size);
+  encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.x).subspan(row));
+  batch.actions.push_back(rng.below(4));
+  batch.rewards.push_back(static_cast<float>(episode.step(static_cast<int>(batch.actions.back())).reward));
+  batch.terminal.push_back(terminal);
+  encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.next_x).subspan(row));
+  for (NodeId node = 0; node < world.graph().node_count(); ++node) {
+    for (const NodeId next : world.graph().neighbours(node)) {
+      probe.from.push_back(probe.first_nodes.back() + next);
+      probe.to.push_back(probe.first_nodes.back() + node);
+    }
+  }
+  batch.graphs.add(world.graph());
+  probe.first_nodes.push_back(batch.graphs.node_count());
+}
 
 int write_probe(const std::string& out, bool double_dqn) {
   Rng rng(42);
   std::vector<World> worlds = load_worlds({"paper"});
   worlds.emplace_back("wide", GridMap{.rows = 3, .cols = 9, .blocked = std::vector<bool>(27)});
   worlds.emplace_back("large", GridMap{.rows = 11, .cols = 11, .blocked = std::vector<bool>(121)});
-
-  PaperMinibatch batch;
+  Probe probe;
+  PaperMinibatch& batch = probe.batch;
   batch.graphs.clear();
-  Edges edges;
-  std::vector<std::int64_t> first_nodes = {0};
   for (int i = 0; i < 32; ++i) {
-    const World& world = worlds[static_cast<std::size_t>(i) % worlds.size()];
-    const PaperFeatureEncoder encoder(world);
-    Episode episode(world, {.budget = 40, .end_at_full_coverage = true});
-    episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
-    for (std::uint32_t steps = rng.below(25); steps > 0; --steps) episode.step(static_cast<int>(rng.below(4)));
-    const std::size_t row = batch.x.size();
-    const std::size_t size = episode.visits().size() * kPaperFeatureCount;
-    batch.x.resize(row + size);
-    batch.next_x.resize(row + size);
-    encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.x).subspan(row));
-    batch.actions.push_back(rng.below(4));
-    batch.rewards.push_back(static_cast<float>(episode.step(static_cast<int>(batch.actions.back())).reward));
-    batch.terminal.push_back(i % 7 == 3);
-    encoder.encode(episode.position(), std::span(episode.visits()), std::span(batch.next_x).subspan(row));
-    for (NodeId node = 0; node < world.graph().node_count(); ++node) {
-      for (const NodeId next : world.graph().neighbours(node)) {
-        edges.from.push_back(first_nodes.back() + next);
-        edges.to.push_back(first_nodes.back() + node);
-      }
-    }
-    batch.graphs.add(world.graph());
-    first_nodes.push_back(batch.graphs.node_count());
+    const PaperFeatureEncoder encoder(worlds[static_cast<std::size_t>(i) % worlds.size()]);
+    add_transition(encoder, /*terminal=*/i % 7 == 3, rng, probe);
   }
 
   PaperKernelLearner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);
@@ -78,7 +85,7 @@ int write_probe(const std::string& out, bool double_dqn) {
 
   const auto n = static_cast<std::int64_t>(batch.graphs.node_count());
   const auto b = static_cast<std::int64_t>(batch.graphs.graph_count());
-  const auto e = static_cast<std::int64_t>(edges.from.size());
+  const auto e = static_cast<std::int64_t>(probe.from.size());
   const std::vector<std::int64_t> terminal(batch.terminal.begin(), batch.terminal.end());
   const std::vector<double> discount = {kDiscount};
   std::vector<TensorView> tensors;
@@ -87,9 +94,9 @@ int write_probe(const std::string& out, bool double_dqn) {
   };
   add("x", {n, kPaperFeatureCount}, batch.x);
   add("next_x", {n, kPaperFeatureCount}, batch.next_x);
-  add("edges.from", {e}, edges.from);
-  add("edges.to", {e}, edges.to);
-  add("first_nodes", {b + 1}, first_nodes);
+  add("edges.from", {e}, probe.from);
+  add("edges.to", {e}, probe.to);
+  add("first_nodes", {b + 1}, probe.first_nodes);
   add("actions", {b}, batch.actions);
   add("rewards", {b}, batch.rewards);
   add("terminal", {b}, terminal);

@@ -11,8 +11,12 @@
 namespace graphdrl {
 namespace {
 
+constexpr std::size_t kLongestMessage = 800;  // characters: CLI11's repeat a bad line however long it is
+
 int complain(const CLI::App& app, std::string_view message, int status) {
-  print_diagnostic(fmt::format("{}: {}\n", app.get_name(), escaped(message.substr(0, message.find('\n')))));
+  message = message.substr(0, message.find('\n'));
+  const char* const rest = message.size() > kLongestMessage ? " …" : "";
+  print_diagnostic(fmt::format("{}: {}{}\n", app.get_name(), escaped(message.substr(0, kLongestMessage)), rest));
   return status;
 }
 

@@ -39,7 +39,7 @@ class ConfigReader : public CLI::ConfigTOML {
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::stringstream content;
     content << input.rdbuf();
-    if ((content >> std::ws).peek() != '{') return from_lines(content);
+    if ((content >> std::ws).peek() != '{') return CLI::ConfigTOML::from_config(content);
     const Json json = parse_shallow_json(content.str(), "--config");
     if (!json.is_object()) throw Error({.what = "the configuration is not valid JSON", .where = "--config"});
     std::vector<CLI::ConfigItem> result;
@@ -52,19 +52,6 @@ class ConfigReader : public CLI::ConfigTOML {
       result.push_back(std::move(item));
     }
     return result;
-  }
-
- private:
-  // CLI11's messages repeat a bad line, however long it is.
-  std::vector<CLI::ConfigItem> from_lines(std::istream& content) const {
-    try {
-      return CLI::ConfigTOML::from_config(content);
-    } catch (const CLI::ParseError& error) {
-      throw Error({.what = "the configuration cannot be read",
-                   .expected = "JSON, or lines name = value",
-                   .got = in_quotes(error.what(), 100),
-                   .where = "--config"});
-    }
   }
 };
 
