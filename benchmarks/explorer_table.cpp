@@ -11,17 +11,19 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <string_view>
 
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
-#include "graphdrl/eval/rollout.h"
 #include "graphdrl/eval/statistics.h"
+#include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/exact.h"
+#include "graphdrl/planners/explorer.h"
 
 namespace graphdrl {
 namespace {
@@ -55,19 +57,12 @@ Case of_split(const WorldSpec& spec, double budget, int worlds, int starts, bool
 // One policy's walks over all worlds of a case.
 struct Column {
   std::string name;
-  std::function<std::vector<NodeId>(const SearchStart&)> walk;
+  std::function<Plan(const Task&)> plan;
   bool wide = false;
   std::vector<double> coverage{};  // by world, percent
   std::vector<double> times_ms{};  // by walk
   double visits = 0;
 };
-
-std::vector<NodeId> nearest_walk(const SearchStart& start) {
-  NearestUnvisitedPolicy policy;
-  const NodeId from = start.position;
-  const EpisodeOptions options{.budget = start.budget_left, .action_space = action_space_of(*start.world)};
-  return roll_out(*start.world, std::span(&from, 1), options, policy).front().walk;
-}
 
 std::string with_interval(const std::vector<double>& values) {
   const Summary summary = summarise(values);
@@ -90,18 +85,15 @@ bool is_shown(const Case& one, const Column& column) {
 enum { kNearest, kBeam16, kBeam50, kBeam1000, kExplorer, kGuided16, kGuided50 };
 
 std::vector<Column> make_columns(const SharedExplorer& explorer) {
-  const auto beam = [](int width) {
-    return [width](const SearchStart& start) { return beam_plan(start, {.width = width})->walk; };
+  const auto beam = [](int width) { return [width](const Task& task) { return beam_plan(task, {.width = width}); }; };
+  const auto scorer = std::make_shared<ExplorerScorer>(explorer);
+  const auto guided = [scorer](int width) {
+    return [scorer, width](const Task& task) { return BeamPlanner({.width = width}, scorer).plan(task); };
   };
-  // A policy keeps what it knows of a world, so each walk has its own.
-  const auto guided = [explorer](int width) {
-    return
-        [explorer, width](const SearchStart& start) { return BeamPolicy({.width = width}, explorer).plan(start).walk; };
-  };
-  const auto alone = [explorer](const SearchStart& start) { return ExplorerPolicy(explorer).plan(start).walk; };
-  return {{"nearest", nearest_walk},       {"beam:16", beam(16)}, {"beam:50", beam(50)},
-          {"beam:1000", beam(1000), true}, {"explorer", alone},   {"guided:16", guided(16)},
-          {"guided:50", guided(50)}};
+  const auto alone = [scorer](const Task& task) { return ExplorerPlanner(scorer).plan(task); };
+  const auto nearest = [](const Task& task) { return NearestPlanner().plan(task); };
+  return {{"nearest", nearest}, {"beam:16", beam(16)},     {"beam:50", beam(50)},    {"beam:1000", beam(1000), true},
+          {"explorer", alone},  {"guided:16", guided(16)}, {"guided:50", guided(50)}};
 }
 
 void print_case(const Case& one, const SharedExplorer& explorer) {
@@ -127,17 +119,17 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
     }
     bounds.push_back(0);
     for (const NodeId start : starts) {
-      const SearchStart from = search_start(world, start, budget);
-      const std::optional<int> best = one.solved ? exact_gain(from) : std::nullopt;
-      bounds.back() += share * (best ? *best + 1 : max_visited(from));
+      const Task task{.view = world, .start = start, .budget = budget};
+      const std::optional<double> best = one.solved ? exact_prize(task) : std::nullopt;
+      bounds.back() += share * (best ? *best : max_prize(task));
       for (Column& column : columns) {
         if (!is_shown(one, column)) continue;
         const auto begin = std::chrono::steady_clock::now();
-        const std::vector<NodeId> walk = column.walk(from);
+        const Plan plan = column.plan(task);
         const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
         column.times_ms.push_back(time.count());
         Episode check(world, {.budget = budget, .action_space = action_space_of(world)});
-        follow_walk(check, walk);
+        follow_walk(check, plan.walk);
         column.coverage.back() += share * check.visited_count();
         column.visits += check.visited_count() - 1;
       }

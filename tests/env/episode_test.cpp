@@ -172,11 +172,51 @@ TEST(Episode, SpendsCostsAndMasksWhatCannotBePaid) {
   EXPECT_FALSE(episode.done());
   episode.step(1);
   EXPECT_EQ(episode.spent(), 0.5);
-  EXPECT_EQ(episode.observation().budget_left, 1.5);
+  EXPECT_NEAR(episode.observation().spendable, 1.5, 1e-8);
   EXPECT_TRUE(episode.done()) << "no edge leads on";
   episode.reset(1);
   episode.step(0);
   EXPECT_EQ(episode.spent(), 1);
+}
+
+// Integer costs are exact: 1000000001 of 1000000000 is too much, though it is within a billionth.
+TEST(Episode, SpendsWholeNumbersToTheLast) {
+  const std::vector<Edge> edges = {{0, 1, 1'000'000'001}, {1, 2, 1'000'000'000}};
+  const World world("far", Graph::from_edges(3, edges), std::vector<bool>(3));
+  Episode episode(world, {.budget = 1'000'000'000, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  EXPECT_TRUE(episode.done());
+  episode.reset(2);
+  EXPECT_FALSE(episode.done());
+}
+
+TEST(Episode, MasksMovesAfterWhichTheEndIsOutOfReach) {
+  // 0 - 1 - 2 - 3, and back to 0 with 4 steps: 2 can be had, 3 cannot.
+  const World world = grid_world("....\n");
+  Episode episode(world, {.budget = 4, .end = End::at_start()});
+  episode.reset(0);
+  episode.step(kRight);
+  EXPECT_TRUE(episode.observation().legal(kRight));
+  episode.step(kRight);
+  EXPECT_FALSE(episode.observation().legal(kRight));
+  EXPECT_FALSE(episode.observation().affordable(kUp)) << "a blocked move costs a step too";
+  episode.step(kLeft);
+  episode.step(kLeft);
+  EXPECT_TRUE(episode.done());
+  EXPECT_EQ(episode.position(), 0);
+  EXPECT_THAT(error_of([&] { Episode(world, {.budget = 2, .end = End::at(3)}).reset(0); }),
+              HasSubstr("the end cannot be reached within the budget"));
+  EXPECT_THAT(error_of([&] { Episode(world, {.budget = 2, .end = End::at(4)}).reset(0); }), HasSubstr("end outside"));
+}
+
+TEST(Episode, AddsUpThePrizesOfFirstVisits) {
+  const std::vector<Edge> edges = {{0, 1}, {1, 2}};
+  const World world("prizes", Graph::from_edges(3, edges), std::vector<bool>(3), {}, {0.5, 2, 3});
+  Episode episode(world, {.budget = 9, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  for (const int action : {0, 0, 0, 1}) episode.step(action);  // 1, 0, 1, 2
+  EXPECT_EQ(episode.prize(), 5.5);
+  EXPECT_EQ(world.total_prize(), 5.5);
 }
 
 TEST(Episode, ForgivesTheRoundingOfSums) {

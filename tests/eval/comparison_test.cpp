@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "graphdrl/base/parallel.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/nn/paper_network.h"
 #include "support.h"
@@ -60,6 +61,16 @@ TEST(Compare, GivesAMapTheSameFiguresWhateverPoliciesStandBeside) {
   }
 }
 
+TEST(Compare, IsTheSameForAnyNumberOfThreads) {
+  const ComparisonOptions options{.policies = {"random", "nearest", "guided:4", "exact"}, .episodes = 9};
+  const std::string one = format_comparison(compare(paper_worlds(), options));
+  for (const int count : {2, 3}) {
+    set_threads(count);
+    EXPECT_EQ(format_comparison(compare(paper_worlds(), options)), one) << count << " threads";
+  }
+  set_threads(1);
+}
+
 TEST(Compare, NamesPoliciesOfOneStemByTheirPaths) {
   const TemporaryFolder folder;
   std::vector<std::string> files;
@@ -85,7 +96,8 @@ TEST(Compare, LeavesOutWhatIsOutOfReach) {
   EXPECT_TRUE(result.overall[0].ratio_to_optimum);
   EXPECT_FALSE(result.overall[1].ratio_to_optimum);
   EXPECT_EQ(result.rows[2].budget, 70);
-  EXPECT_THAT(format_comparison(result), HasSubstr("–"));
+  EXPECT_THAT(format_comparison(result), HasSubstr("optimum –: not computed for maps of more than 25 valid nodes"));
+  EXPECT_THAT(format_comparison(result), HasSubstr("mean –: the policy's search is out of reach on that map"));
 }
 
 TEST(Compare, RefusesBadOptions) {

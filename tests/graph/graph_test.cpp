@@ -60,6 +60,22 @@ TEST(Graph, DirectedEdgesLeadOneWay) {
   EXPECT_EQ(graph.without({false, false, true}).edge_count(), 2);
 }
 
+// The way to the first node that a search meets of those that are goals, through those that may be entered.
+template <typename IsGoal, typename MayEnter>
+std::vector<NodeId> path_to_nearest(const Graph& graph, NodeId from, const IsGoal& is_goal, const MayEnter& may_enter) {
+  NearestFirst search;
+  NodeId goal = kNoNode;
+  search.run(graph, from, kNoLimit, [&](NodeId node, double) {
+    if (!may_enter(node)) return NearestFirst::Next::kPast;
+    if (!is_goal(node)) return NearestFirst::Next::kThrough;
+    goal = node;
+    return NearestFirst::Next::kEnd;
+  });
+  std::vector<NodeId> path;
+  if (goal != kNoNode) search.append_path_to(goal, path);
+  return path;
+}
+
 TEST(Search, GoesByCostWhereEdgesHaveCosts) {
   const std::vector<Edge> edges = {{0, 1, 5}, {0, 2, 1}, {2, 1, 1}, {1, 3, 1}};
   const Graph graph = Graph::from_edges(4, edges);

@@ -16,19 +16,21 @@ namespace {
 
 // A state some first visits into a walk.
 struct Walked {
-  Walked(const World& of, NodeId start, double budget) : world(of), visited((of.graph().node_count() + 63) / 64) {
+  Walked(const World& of, NodeId start, double budget) : world(of), visited(of.node_count()) {
     visit(start, 0);
     spendable = budget;
   }
   void visit(NodeId node, double cost) {
-    visited[node / 64] |= std::uint64_t{1} << (node % 64);
+    visited.insert(node);
     position = node;
     spendable -= cost;
   }
-  ExplorerState state() const { return {visited.data(), position, spendable}; }
+  ExplorationState state() const {
+    return {.visited = visited, .visited_count = visited.count(), .position = position, .spendable = spendable};
+  }
 
-  const World& world;
-  std::vector<std::uint64_t> visited;
+  World world;
+  NodeSet visited;
   NodeId position = 0;
   double spendable = 0;
 };
@@ -45,7 +47,7 @@ std::vector<float> scores(const ExplorerParameters& parameters, const ExplorerBa
 void wander(Walked& walked, ExplorerEncoder& encoder, int visits, Rng& rng) {
   for (; visits > 0; --visits) {
     ExplorerBatch batch;
-    const auto found = encoder.append(walked.state(), kExplorerScope, batch);
+    const auto found = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
     if (found.empty()) return;
     const FirstVisit visit = found[rng.below(static_cast<std::uint32_t>(found.size()))];
     walked.visit(visit.node, visit.cost);
@@ -56,10 +58,10 @@ TEST(ExplorerFeatures, AreWorkedOutByHand) {
   // S . .    From S with 4 steps to spend: its right neighbour and the one below are the first visits.
   // . # .
   const World world = grid_world("...\n.#.\n");
-  ExplorerEncoder encoder(world);
+  ExplorerEncoder encoder;
   const Walked walked(world, 0, 4);
   ExplorerBatch batch;
-  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
+  const auto visits = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
   ASSERT_EQ(visits.size(), 2u);
   EXPECT_EQ(visits[0].node, 1);
   EXPECT_EQ(visits[1].node, 3);
@@ -96,11 +98,11 @@ TEST(ExplorerFeatures, AreWorkedOutByHand) {
 
 TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   const World world = grid_world(std::string(200, '.') + "\n");
-  ExplorerEncoder encoder(world);
+  ExplorerEncoder encoder;
   ExplorerBatch batch;
-  encoder.append(Walked(world, 100, 5).state(), kExplorerScope, batch);
+  encoder.append(world, Walked(world, 100, 5).state(), kExplorerScope, batch);
   EXPECT_EQ(batch.graphs.graph(0).node_count(), 11);
-  encoder.append(Walked(world, 100, 500).state(), kExplorerScope, batch);
+  encoder.append(world, Walked(world, 100, 500).state(), kExplorerScope, batch);
   EXPECT_EQ(batch.graphs.graph(1).node_count(), kExplorerScope);
   // Each of its two ends has one neighbour of two out of scope.
   double out_of_scope = 0;
@@ -115,7 +117,7 @@ TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   Walked walked(world, 0, 1000);
   for (NodeId node = 1; node < 150; ++node) walked.visit(node, 1);
   walked.visit(0, 149);
-  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
+  const auto visits = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
   ASSERT_EQ(visits.size(), 1u);
   EXPECT_EQ(visits[0].node, 150);
   EXPECT_FALSE(encoder.overlooked());
@@ -125,9 +127,8 @@ TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   std::vector<Edge> rays;
   for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf});
   const World star("star", Graph::from_edges(201, rays), std::vector<bool>(201));
-  ExplorerEncoder star_encoder(star);
-  EXPECT_EQ(star_encoder.append(Walked(star, 0, 9).state(), kExplorerScope, batch).size(), kExplorerScope - 1u);
-  EXPECT_TRUE(star_encoder.overlooked());
+  EXPECT_EQ(encoder.append(star, Walked(star, 0, 9).state(), kExplorerScope, batch).size(), kExplorerScope - 1u);
+  EXPECT_TRUE(encoder.overlooked());
 }
 
 TEST(ExplorerNetwork, DoesNotDependOnHowNodesAreNumbered) {
@@ -145,19 +146,19 @@ TEST(ExplorerNetwork, DoesNotDependOnHowNodesAreNumbered) {
       for (Edge& edge : edges) edge = {number[edge.a], number[edge.b], edge.cost};
       const EdgeKind kind = directed ? EdgeKind::kDirected : EdgeKind::kUndirected;
       const World renumbered("renumbered", Graph::from_edges(nodes, edges, kind), std::vector<bool>(nodes));
-      ExplorerEncoder encoder(world);
-      ExplorerEncoder other(renumbered);
+      ExplorerEncoder encoder;
+      ExplorerEncoder other;
       Walked walked(world, 0, 0.9 * nodes * world.open().mean_cost());
       wander(walked, encoder, 8, rng);
       Walked same(renumbered, number[walked.position], walked.spendable);
       for (NodeId node = 0; node < nodes; ++node) {
-        if ((walked.visited[node / 64] >> (node % 64) & 1) != 0) same.visit(number[node], 0);
+        if (walked.visited.contains(node)) same.visit(number[node], 0);
       }
       same.position = number[walked.position];
       ExplorerBatch batch;
       ExplorerBatch same_batch;
-      const auto found = encoder.append(walked.state(), kExplorerScope, batch);
-      const auto same_found = other.append(same.state(), kExplorerScope, same_batch);
+      const auto found = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
+      const auto same_found = other.append(renumbered, same.state(), kExplorerScope, same_batch);
       const std::vector<float> score = scores(parameters, batch);
       const std::vector<float> same_score = scores(parameters, same_batch);
       ASSERT_EQ(found.size(), same_found.size());
@@ -181,15 +182,14 @@ struct Sample {
          {WorldSpec{"obstacles", 6}, WorldSpec{"tree", 30}, WorldSpec{"geometric", 25, true, true}}) {
       worlds.push_back(split_world(spec, Split::kValidation, 1));
     }
-    for (const World& world : worlds) encoders.emplace_back(world);
     for (std::size_t i = 0; i < worlds.size(); ++i) {
       Walked walked(worlds[i], worlds[i].valid_nodes()[0], worlds[i].valid_count() * worlds[i].open().mean_cost());
-      wander(walked, encoders[i], 5, rng);
-      encoders[i].append(walked.state(), i == 1 ? 12 : kExplorerScope, batch);
+      wander(walked, encoder, 5, rng);
+      encoder.append(walked.world, walked.state(), i == 1 ? 12 : kExplorerScope, batch);
     }
   }
   std::vector<World> worlds;
-  std::deque<ExplorerEncoder> encoders;
+  ExplorerEncoder encoder;
   ExplorerBatch batch;
 };
 

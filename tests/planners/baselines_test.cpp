@@ -11,32 +11,31 @@ namespace {
 
 using ::testing::ElementsAre;
 
-std::vector<NodeId> walk_of(Policy& policy, const World& world, NodeId start, double budget,
-                            ActionSpace space = ActionSpace::kDirections) {
-  return roll_out(world, {&start, 1}, {.budget = budget, .action_space = space}, policy).front().walk;
+std::vector<NodeId> walk_of(Planner& planner, const World& world, NodeId start, double budget) {
+  return planner.plan({.view = world, .start = start, .budget = budget}).walk;
 }
 
 TEST(DepthFirst, DescendsInGraphOrderAndBacktracks) {
-  DepthFirstPolicy policy;
+  DepthFirstPlanner planner;
   // 0 1 2
   // # 4 #
   const World world = grid_world("...\n#.#\n");
-  EXPECT_THAT(walk_of(policy, world, 1, 25), ElementsAre(1, 0, 1, 2, 1, 4, 1));  // left, right, down, and stops at home
-  EXPECT_THAT(walk_of(policy, world, 1, 3), ElementsAre(1, 0, 1, 2));
+  EXPECT_THAT(walk_of(planner, world, 1, 25), ElementsAre(1, 0, 1, 2, 1, 4));  // left, right, down
+  EXPECT_THAT(walk_of(planner, world, 1, 3), ElementsAre(1, 0, 1, 2));
 }
 
 TEST(DepthFirst, WalksOtherGraphsByAscendingId) {
-  DepthFirstPolicy policy;
+  DepthFirstPlanner planner;
   const std::vector<Edge> edges = {{0, 3}, {0, 1}, {1, 2}};
   const World world("tree", Graph::from_edges(4, edges), std::vector<bool>(4));
-  EXPECT_THAT(walk_of(policy, world, 0, 9, ActionSpace::kNeighbours), ElementsAre(0, 1, 2, 1, 0, 3, 0));
+  EXPECT_THAT(walk_of(planner, world, 0, 9), ElementsAre(0, 1, 2, 1, 0, 3));
 }
 
 TEST(NearestUnvisited, TakesTheFirstOfTheNearestAndStopsWhenNothingIsLeft) {
-  NearestUnvisitedPolicy policy;
-  EXPECT_THAT(walk_of(policy, grid_world("...\n#.#\n"), 1, 25), ElementsAre(1, 0, 1, 2, 1, 4));
-  EXPECT_THAT(walk_of(policy, grid_world("..#.\n"), 0, 25), ElementsAre(0, 1));  // the last node is out of reach
-  EXPECT_THAT(walk_of(policy, grid_world("...\n...\n...\n"), 4, 25), ElementsAre(4, 3, 0, 1, 2, 5, 8, 7, 6));
+  NearestPlanner planner;
+  EXPECT_THAT(walk_of(planner, grid_world("...\n#.#\n"), 1, 25), ElementsAre(1, 0, 1, 2, 1, 4));
+  EXPECT_THAT(walk_of(planner, grid_world("..#.\n"), 0, 25), ElementsAre(0, 1));  // the last node is out of reach
+  EXPECT_THAT(walk_of(planner, grid_world("...\n...\n...\n"), 4, 25), ElementsAre(4, 3, 0, 1, 2, 5, 8, 7, 6));
 }
 
 TEST(RandomPolicies, DrawUniformly) {
@@ -61,14 +60,34 @@ TEST(RandomPolicies, DrawUniformly) {
   EXPECT_EQ(steps[1] + steps[3], 0);
 }
 
-TEST(Policies, StopWhereThereIsNowhereToGo) {
+TEST(Baselines, StopWhereThereIsNowhereToGo) {
   const World world = grid_world(".#\n#.\n");
   RandomWalkPolicy random_walk(1);
-  DepthFirstPolicy dfs;
-  NearestUnvisitedPolicy nearest;
-  for (Policy* policy :
-       {static_cast<Policy*>(&random_walk), static_cast<Policy*>(&dfs), static_cast<Policy*>(&nearest)}) {
-    EXPECT_THAT(walk_of(*policy, world, 0, 25), ElementsAre(0));
+  const NodeId start = 0;
+  EXPECT_THAT(roll_out(world, {&start, 1}, {.budget = 25}, random_walk).front().walk, ElementsAre(0));
+  DepthFirstPlanner dfs;
+  NearestPlanner nearest;
+  EXPECT_THAT(walk_of(dfs, world, 0, 25), ElementsAre(0));
+  EXPECT_THAT(walk_of(nearest, world, 0, 25), ElementsAre(0));
+}
+
+// Whatever they draw, they keep what the way to the end costs.
+TEST(RandomPolicies, EndWhereTheyMust) {
+  Rng rng(3);
+  for (int round = 0; round < 200; ++round) {
+    const World world = random_world(rng, 4, 4, 0.2);
+    const auto draw = [&] { return world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]; };
+    const NodeId start = draw();
+    const NodeId end = draw();
+    const EpisodeOptions options{.budget = 12, .end = End::at(end)};
+    if (costs_to(world.into(), end)[start] > 12) continue;
+    RandomPolicy random(rng.next());
+    RandomWalkPolicy random_walk(rng.next());
+    for (Policy* policy : {static_cast<Policy*>(&random), static_cast<Policy*>(&random_walk)}) {
+      const std::vector<NodeId> walk = roll_out(world, {&start, 1}, options, *policy).front().walk;
+      ASSERT_EQ(walk.back(), end);
+      ASSERT_LE(walk.size(), 13u);
+    }
   }
 }
 

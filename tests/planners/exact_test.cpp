@@ -6,6 +6,7 @@
 
 #include "graphdrl/env/walk.h"
 #include "graphdrl/eval/rollout.h"
+#include "graphdrl/planners/planner_policy.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -44,40 +45,40 @@ TEST(ExactSearch, IsBruteForceOnSmallWorlds) {
     const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
     BruteForce brute{.world = world, .walk = {start}};
     brute.search(budget);
-    const SearchStart from = search_start(world, start, budget);
+    const Task from{.view = world, .start = start, .budget = static_cast<double>(budget)};
     EXPECT_EQ(exact_walk(from), brute.best);
-    EXPECT_EQ(exact_gain(from), brute.best_count - 1);
+    EXPECT_EQ(exact_prize(from), brute.best_count);
   }
 }
 
 TEST(ExactSearch, SolvesAnOpenGridOfTwentyFiveNodes) {
   const World world = grid_world(".....\n.....\n.....\n.....\n.....\n");
-  EXPECT_EQ(exact_gain(search_start(world, 0, 24)), 24);
-  EXPECT_EQ(exact_gain(search_start(world, 1, 24)), 23);  // the lesser colour of the chessboard cannot
-  EXPECT_EQ(exact_gain(search_start(world, 1, 25)), 24);
-  EXPECT_EQ(exact_gain(search_start(world, 12, 1.5)), 1);
+  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 24}), 25);
+  EXPECT_EQ(exact_prize({.view = world, .start = 1, .budget = 24}), 24);  // the lesser colour of the chessboard cannot
+  EXPECT_EQ(exact_prize({.view = world, .start = 1, .budget = 25}), 25);
+  EXPECT_EQ(exact_prize({.view = world, .start = 12, .budget = 1.5}), 2);
 }
 
 TEST(ExactSearch, CountsOnlyWhatItCanReach) {
   const World world = grid_world("..#..\n..#..\n");
-  EXPECT_EQ(exact_gain(search_start(world, 0, 25)), 3);
-  EXPECT_EQ(exact_gain(search_start(world, 0, 0)), 0);
+  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 25}), 4);
+  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 0}), 1);
 }
 
 TEST(ExactSearch, SaysWhenItIsOutOfReach) {
   const World world = grid_world(std::string(65, '.') + "\n");
-  EXPECT_EQ(exact_gain(search_start(world, 0, 10)), std::nullopt);
-  Episode episode(world, {.budget = 10});
+  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 100}), std::nullopt);
+  Episode episode(world, {.budget = 100});
   episode.reset(0);
   const Observation observation = episode.observation();
   int action = 0;
-  ExactPolicy policy;
+  PlannerPolicy policy(std::make_unique<ExactPlanner>());
   EXPECT_THROW(policy.act({&observation, 1}, {&action, 1}), SearchOutOfReach);
 }
 
-TEST(ExactPolicy, PlansAnewWhereSomeoneElseLedTheWay) {
+TEST(PlannerPolicy, PlansAnewWhereSomeoneElseLedTheWay) {
   const World world = grid_world("....\n");
-  ExactPolicy policy;
+  PlannerPolicy policy(std::make_unique<ExactPlanner>());
   const NodeId start = 1;
   EXPECT_THAT(roll_out(world, {&start, 1}, {.budget = 4}, policy).front().walk, ElementsAre(1, 0, 1, 2, 3));
   Episode episode(world, {.budget = 4});

@@ -7,10 +7,13 @@
 #include <queue>
 
 #include "graphdrl/env/walk.h"
+#include "graphdrl/env/world_families.h"
 #include "graphdrl/eval/rollout.h"
+#include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/exact.h"
+#include "graphdrl/planners/explorer.h"
 #include "graphdrl/planners/registry.h"
 #include "support.h"
 
@@ -21,6 +24,8 @@ struct Case {
   World world;
   NodeId start;
   double budget;
+
+  Task task() const { return {.view = world, .start = start, .budget = budget}; }
 };
 
 // Sparse and dense, undirected and directed, with and without costs and blocked nodes, connected or not.
@@ -73,13 +78,15 @@ Optimum brute_force(const Case& c) {
 TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
   Rng rng(11);
   int tight = 0;
+  ExplorerScorer scorer(builtin_explorer());
+  ExplorerPlanner explorer(std::make_shared<ExplorerScorer>(builtin_explorer()));
   constexpr int kCases = 10'000;
   for (int i = 0; i < kCases; ++i) {
     SCOPED_TRACE(i);
     const Case c = random_case(rng);
-    const SearchStart start = search_start(c.world, c.start, c.budget);
+    const Task task = c.task();
     const Optimum optimum = brute_force(c);
-    const int most = max_visited(start);
+    const double most = max_prize(task);
     ASSERT_GE(most, optimum.visited);
     tight += most == optimum.visited;
 
@@ -88,25 +95,24 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
       follow_walk(episode, walk);  // throws where a step is no edge or cannot be paid for
       return Optimum{episode.visited_count(), episode.spent()};
     };
-    const auto exact = exact_walk(start);
+    const auto exact = exact_walk(task);
     ASSERT_TRUE(exact);
     const Optimum found = follow(*exact);
     ASSERT_EQ(found.visited, optimum.visited);
     ASSERT_NEAR(found.cost, optimum.cost, 1e-9);
-    ASSERT_EQ(exact_gain(start), optimum.visited - 1);
-    for (const int width : {1, 3}) ASSERT_LE(follow(beam_plan(start, {.width = width})->walk).visited, optimum.visited);
-    const auto complete = beam_plan(start, {.width = 1000});  // no partial walk is dropped
-    ASSERT_TRUE(complete->optimal);
-    const Optimum all = follow(complete->walk);
+    ASSERT_EQ(exact_prize(task), optimum.visited);
+    for (const int width : {1, 3}) ASSERT_LE(follow(beam_plan(task, {.width = width}).walk).visited, optimum.visited);
+    const auto complete = beam_plan(task, {.width = 1000});  // no partial walk is dropped
+    ASSERT_TRUE(complete.optimal);
+    const Optimum all = follow(complete.walk);
     ASSERT_EQ(all.visited, optimum.visited);
     ASSERT_NEAR(all.cost, optimum.cost, 1e-9);
-    ExplorerGuide guide(builtin_explorer());
-    const auto guided = beam_plan(start, {.width = 1000}, {}, &guide);
-    ASSERT_TRUE(guided->optimal);
-    ASSERT_EQ(follow(guided->walk).visited, optimum.visited);
-    const auto narrow = beam_plan(start, {.width = 1}, {}, &guide);
-    ASSERT_TRUE(!narrow->optimal || follow(narrow->walk).visited == optimum.visited);
-    const Plan alone = ExplorerPolicy(builtin_explorer()).plan(start);
+    const auto guided = beam_plan(task, {.width = 1000}, {}, &scorer);
+    ASSERT_TRUE(guided.optimal);
+    ASSERT_EQ(follow(guided.walk).visited, optimum.visited);
+    const auto narrow = beam_plan(task, {.width = 1}, {}, &scorer);
+    ASSERT_TRUE(!narrow.optimal || follow(narrow.walk).visited == optimum.visited);
+    const Plan alone = explorer.plan(task);
     ASSERT_TRUE(!alone.optimal || follow(alone.walk).visited == optimum.visited);
     for (const char* const name :
          {"random", "random-walk", "dfs", "nearest", "beam:2", "explorer", "guided:2", "exact"}) {
@@ -119,22 +125,121 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
   EXPECT_GT(tight, kCases * 9 / 10) << "the bound is loose";
 }
 
+// With ends and prizes: the highest prize, and the least cost of a walk that has it and ends where it must.
+struct PrizeOptimum {
+  double prize;
+  double cost;
+};
+
+std::optional<PrizeOptimum> brute_force_prize(const Case& c, NodeId end) {
+  using Key = std::pair<unsigned, NodeId>;
+  std::map<Key, double> least;
+  std::priority_queue<std::pair<double, Key>, std::vector<std::pair<double, Key>>, std::greater<>> queue;
+  queue.push({0, {1U << c.start, c.start}});
+  std::optional<PrizeOptimum> best;
+  while (!queue.empty()) {
+    const auto [cost, key] = queue.top();
+    queue.pop();
+    if (!least.try_emplace(key, cost).second) continue;
+    double prize = 0;
+    for (NodeId node = 0; node < c.world.node_count(); ++node) {
+      if ((key.first >> node & 1U) != 0) prize += c.world.prize(node);
+    }
+    if ((end == kNoNode || key.second == end) && (!best || prize > best->prize)) best = {prize, cost};
+    const Graph& graph = c.world.open();
+    for (int i = 0; i < graph.degree(key.second); ++i) {
+      const NodeId next = graph.neighbours(key.second)[i];
+      const double after = cost + graph.cost(key.second, i);
+      if (after <= c.budget) queue.push({after, {key.first | 1U << next, next}});
+    }
+  }
+  return best;
+}
+
+TEST(Optimality, HoldsForEndsAndPrizes) {
+  Rng rng(13);
+  int compared = 0;
+  for (int i = 0; i < 6'000; ++i) {
+    SCOPED_TRACE(i);
+    Case c = random_case(rng);
+    std::vector<double> prizes;
+    for (NodeId node = 0; node < c.world.node_count(); ++node) prizes.push_back(0.5 * rng.below(7));
+    if (rng.below(2) == 0) prizes.clear();
+    c.world = World("prizes", c.world.graph(), c.world.blocked(), {}, prizes);
+    const auto nodes = c.world.valid_nodes();
+    const NodeId node = nodes[rng.below(static_cast<std::uint32_t>(nodes.size()))];
+    const std::uint32_t kind = rng.below(3);
+    const NodeId end = kind == 0 ? kNoNode : kind == 1 ? c.start : node;
+    Task task = c.task();
+    task.end = end;
+    const auto optimum = brute_force_prize(c, end);
+    if (!optimum) {
+      EXPECT_THROW(max_prize(task), Error);
+      continue;
+    }
+    ++compared;
+    ASSERT_GE(max_prize(task), optimum->prize - 1e-9);
+    const Plan plan = ExactPlanner().plan(task);
+    ASSERT_TRUE(plan.optimal);
+    ASSERT_NEAR(plan.prize, optimum->prize, 1e-9);
+    ASSERT_NEAR(plan.cost, optimum->cost, 1e-9);
+    Episode episode(c.world, {.budget = c.budget,
+                              .end = end == kNoNode ? End::anywhere() : End::at(end),
+                              .action_space = ActionSpace::kNeighbours});
+    follow_walk(episode, plan.walk);
+    ASSERT_NEAR(episode.prize(), optimum->prize, 1e-9);
+    ASSERT_TRUE(end == kNoNode || episode.position() == end);
+  }
+  EXPECT_GT(compared, 3'000);
+}
+
+TEST(Planners, SayWhatTheyCannotPlanFor) {
+  const World world = grid_world("...\n");
+  const World prizes("prizes", Graph::grid(1, 2), std::vector<bool>(2), {}, {1, 2});
+  for (const char* const name : {"dfs", "nearest", "beam", "guided", "explorer"}) {
+    const auto planner = make_planner(name);
+    EXPECT_NE(error_of([&] {
+                planner->plan({.view = world, .start = 0, .budget = 4, .end = 2});
+              }).find("cannot plan for an end yet"),
+              std::string::npos)
+        << name;
+    EXPECT_NE(
+        error_of([&] { planner->plan({.view = prizes, .start = 0, .budget = 4}); }).find("cannot plan for prizes yet"),
+        std::string::npos)
+        << name;
+  }
+}
+
 TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
-  std::vector<Edge> rays;
-  for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf});
-  const World star("star", Graph::from_edges(201, rays), std::vector<bool>(201));
-  const SearchStart start = search_start(star, 0, 1);
-  ExplorerGuide guide(builtin_explorer());
-  EXPECT_FALSE(beam_plan(start, {.width = 1000}, {}, &guide)->optimal);
-  EXPECT_FALSE(ExplorerPolicy(builtin_explorer()).plan(start).optimal);
-  EXPECT_TRUE(beam_plan(start, {.width = 1000})->optimal) << "all leaves are as near as the sixteenth";
-  EXPECT_FALSE(beam_plan(start, {.width = 1000, .cut_ties = true})->optimal);
+  const auto star = [](NodeId leaves) {
+    std::vector<Edge> rays;
+    for (NodeId leaf = 1; leaf <= leaves; ++leaf) rays.push_back({0, leaf});
+    return World("star", Graph::from_edges(leaves + 1, rays), std::vector<bool>(leaves + 1));
+  };
+  const Task small{.view = star(60), .start = 0, .budget = 1};
+  const Task large{.view = star(200), .start = 0, .budget = 1};
+  ExplorerScorer scorer(builtin_explorer());
+  EXPECT_FALSE(beam_plan(large, {.width = 1000}, {}, &scorer).optimal);
+  EXPECT_FALSE(ExplorerPlanner(std::make_shared<ExplorerScorer>(builtin_explorer())).plan(large).optimal);
+  EXPECT_TRUE(beam_plan(small, {.width = 1000}).optimal) << "all leaves are as near as the sixteenth";
+  EXPECT_FALSE(beam_plan(large, {.width = 1000}).optimal) << "64 ties are enough";
+  EXPECT_FALSE(beam_plan(small, {.width = 1000, .cut_ties = true}).optimal);
   // One way out of 200, each longer than the last.
-  for (Edge& ray : rays) ray.cost = ray.b;
+  std::vector<Edge> rays;
+  for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf, 1.0 * leaf});
   const World longer("longer", Graph::from_edges(201, rays, EdgeKind::kDirected), std::vector<bool>(201));
-  const SearchStart far = search_start(longer, 0, 200);
-  EXPECT_FALSE(beam_plan(far, {.width = 1000})->optimal);
-  EXPECT_TRUE(beam_plan(far, {.width = 1000, .branching = 200})->optimal);
+  const Task far{.view = longer, .start = 0, .budget = 200};
+  EXPECT_FALSE(beam_plan(far, {.width = 1000}).optimal);
+  EXPECT_TRUE(beam_plan(far, {.width = 1000, .branching = 200}).optimal);
+}
+
+// Ties were exempt from branching: a hundred thousand candidates for each of fifty walks of a level, level after level.
+TEST(Beam, LooksAtFewTies) {
+  constexpr NodeId kLeaves = 100'000;
+  std::vector<Edge> rays;
+  for (NodeId leaf = 1; leaf <= kLeaves; ++leaf) rays.push_back({0, leaf});
+  const World star("star", Graph::from_edges(kLeaves + 1, rays), std::vector<bool>(kLeaves + 1));
+  EXPECT_EQ(beam_plan({.view = star, .start = 0, .budget = 40}, {}).visited, 21);
 }
 
 TEST(Beam, TakesTheLongWayPastManyLeavesWhereTheBudgetIsShort) {
@@ -150,8 +255,8 @@ TEST(Beam, TakesTheLongWayPastManyLeavesWhereTheBudgetIsShort) {
         edges.push_back({on_path && !first ? i - 1 : 0, i});
       }
       const World world("hub", Graph::from_edges(kNodes, edges), std::vector<bool>(kNodes));
-      const SearchStart start = search_start(world, 0, 40);
-      EXPECT_EQ(visited_after(start, beam_plan(start, {})->walk), 41) << leaves << path_first;
+      const Plan plan = beam_plan({.view = world, .start = 0, .budget = 40}, {});
+      EXPECT_EQ(plan.visited, 41) << leaves << path_first;
     }
   }
 }
@@ -160,15 +265,19 @@ TEST(Optimality, PlansGoOnFromWhereSomeoneElseLed) {
   Rng rng(12);
   for (int i = 0; i < 500; ++i) {
     const Case c = random_case(rng);
-    SearchStart start = search_start(c.world, c.start, c.budget);
+    Task task = c.task();
+    task.visited = NodeSet(c.world.node_count());
+    task.visited.insert(c.start);
     for (const NodeId node : c.world.valid_nodes()) {
-      if (rng.below(3) == 0) start.visited[node] = true;
+      if (rng.below(3) == 0) task.visited.insert(node);
     }
-    const auto exact = exact_walk(start);
-    ASSERT_TRUE(exact);
-    ASSERT_GE(max_visited(start), visited_after(start, *exact));
-    ASSERT_LE(visited_after(start, beam_plan(start, {})->walk), visited_after(start, *exact));
-    ASSERT_LE(walk_cost(c.world, *exact), c.budget + 1e-9);
+    const auto walk = exact_walk(task);
+    ASSERT_TRUE(walk);
+    const Plan exact = plan_of_walk(task, *walk);
+    ASSERT_GE(max_prize(task), exact.prize);
+    ASSERT_LE(beam_plan(task, {}).prize, exact.prize);
+    ASSERT_LE(NearestPlanner().plan(task).prize, exact.prize);
+    ASSERT_LE(exact.cost, c.budget + 1e-9);
   }
 }
 
@@ -176,76 +285,109 @@ TEST(Bound, IsWorkedOutByHand) {
   // A star of four leaves: each leaf but the last is paid twice.
   const std::vector<Edge> star = {{0, 1}, {0, 2}, {0, 3}, {0, 4}};
   const World world("star", Graph::from_edges(5, star), std::vector<bool>(5));
-  const auto bound = [&](NodeId start, double budget) { return max_visited(search_start(world, start, budget)); };
-  EXPECT_EQ(bound(0, 0), 1);
-  EXPECT_EQ(bound(0, 3), 3);
-  EXPECT_EQ(bound(0, 6), 4);
-  EXPECT_EQ(bound(0, 7), 5);
-  EXPECT_EQ(bound(1, 6), 5);
-  EXPECT_EQ(bound(1, 5), 4);
+  const auto bound = [](const World& of, NodeId start, double budget, NodeId end = kNoNode) {
+    return max_prize({.view = of, .start = start, .budget = budget, .end = end});
+  };
+  EXPECT_EQ(bound(world, 0, 0), 1);
+  EXPECT_EQ(bound(world, 0, 3), 3);
+  EXPECT_EQ(bound(world, 0, 6), 4);
+  EXPECT_EQ(bound(world, 0, 7), 5);
+  EXPECT_EQ(bound(world, 1, 6), 5);
+  EXPECT_EQ(bound(world, 1, 5), 4);
+  EXPECT_EQ(bound(world, 0, 7, 0), 4) << "home again: the fourth leaf is paid twice too";
+  EXPECT_EQ(bound(world, 0, 8, 0), 5);
+  EXPECT_EQ(bound(world, 1, 2, 2), 3);
+  // Worth 10, 1, 1 and 1: with three steps two leaves, one of them the dear one.
+  const World dear("dear", Graph::from_edges(5, star), std::vector<bool>(5), {}, {1, 10, 1, 1, 1});
+  EXPECT_GE(bound(dear, 0, 3), 12);
+  EXPECT_LE(bound(dear, 0, 3), 12.5);
   // A one-way street of three nodes with a side street at the start: what was left is lost.
   const std::vector<Edge> street = {{0, 1}, {1, 2}, {0, 3}};
   const World one_way("street", Graph::from_edges(4, street, EdgeKind::kDirected), std::vector<bool>(4));
-  EXPECT_EQ(max_visited(search_start(one_way, 0, 100)), 3);
-  EXPECT_EQ(max_visited(search_start(one_way, 2, 100)), 1);
+  EXPECT_EQ(bound(one_way, 0, 100), 3);
+  EXPECT_EQ(bound(one_way, 2, 100), 1);
   // Two ways that meet: no walk takes both.
   const std::vector<Edge> ways = {{0, 1}, {0, 2}, {1, 3}, {2, 3}};
   const World meeting("ways", Graph::from_edges(4, ways, EdgeKind::kDirected), std::vector<bool>(4));
-  EXPECT_EQ(max_visited(search_start(meeting, 0, 100)), 3);
+  EXPECT_EQ(bound(meeting, 0, 100), 3);
   // A checkerboard's colours alternate: of 3 × 3 cells, eight steps from one of the four have at most eight.
   const World board = grid_world("...\n...\n...\n");
-  EXPECT_EQ(max_visited(search_start(board, 1, 8)), 8);
-  EXPECT_EQ(max_visited(search_start(board, 0, 8)), 9);
+  EXPECT_EQ(bound(board, 1, 8), 8);
+  EXPECT_EQ(bound(board, 0, 8), 9);
+}
+
+// The exact knapsack is quadratic on a corridor; it gives way to the fractional one.
+TEST(Bound, TakesItsTimeOnNoCorridor) {
+  constexpr NodeId kNodes = 200'000;
+  const World corridor = grid_world(std::string(kNodes, '.') + "\n");
+  EXPECT_EQ(max_prize({.view = corridor, .start = 0, .budget = 1000}), 1001);
+  const double both_ends = max_prize({.view = corridor, .start = kNodes / 2, .budget = 1.0 * kNodes});
+  EXPECT_LE(both_ends, 0.76 * kNodes);
 }
 
 TEST(SpendingLimit, IsOneRuleForEpisodesSearchesAndBounds) {
-  // 1000.0000005 of 1000 is within the rounding of sums, whoever adds up; two tiny edges of nothing are not.
-  const std::vector<Edge> close = {{0, 1, 999}, {1, 2, 1.0000005}};
-  const World path("path", Graph::from_edges(3, close), std::vector<bool>(3));
-  const std::vector<Edge> tiny = {{0, 1, 1e-10}, {1, 2, 1e-10}};
-  const World atoms("atoms", Graph::from_edges(3, tiny), std::vector<bool>(3));
+  // 1000.0000005 of 1000 is within the rounding of sums, whoever adds up; two tiny edges of nothing are not, and of
+  // whole numbers nothing is.
+  const auto path = [](double first, double second) {
+    const std::vector<Edge> edges = {{0, 1, first}, {1, 2, second}};
+    return World("path", Graph::from_edges(3, edges), std::vector<bool>(3));
+  };
   struct Expected {
-    const World* world;
+    World world;
     double budget;
     int visited;
   };
   for (const auto& [world, budget, visited] :
-       {Expected{&path, 1000, 3}, Expected{&path, 999.9, 2}, Expected{&atoms, 0, 1}, Expected{&atoms, 1e-10, 2}}) {
-    const SearchStart start = search_start(*world, 0, budget);
-    EXPECT_EQ(visited_after(start, *exact_walk(start)), visited);
-    EXPECT_EQ(visited_after(start, beam_plan(start, {})->walk), visited);
-    EXPECT_EQ(max_visited(start), visited);
-    Episode episode(*world, {.budget = budget, .action_space = ActionSpace::kNeighbours});
-    follow_walk(episode, *exact_walk(start));
+       {Expected{path(999, 1.0000005), 1000, 3}, Expected{path(999, 1.0000005), 999.9, 2},
+        Expected{path(1e-10, 1e-10), 0, 1}, Expected{path(1e-10, 1e-10), 1e-10, 2},
+        Expected{path(1, 1'000'000'000), 1'000'000'000, 2}, Expected{path(1, 999'999'999), 1'000'000'000, 3}}) {
+    const Task task{.view = world, .start = 0, .budget = budget};
+    EXPECT_EQ(ExactPlanner().plan(task).visited, visited);
+    EXPECT_EQ(beam_plan(task, {}).visited, visited);
+    EXPECT_EQ(NearestPlanner().plan(task).visited, visited);
+    EXPECT_EQ(DepthFirstPlanner().plan(task).visited, visited);
+    EXPECT_EQ(max_prize(task), visited);
+    Episode episode(world, {.budget = budget, .action_space = ActionSpace::kNeighbours});
+    follow_walk(episode, *exact_walk(task));
     EXPECT_EQ(episode.visited_count(), visited);
   }
 }
 
+Deadline ample() {
+  return std::chrono::steady_clock::now() + std::chrono::hours(1);
+}
+
 TEST(Beam, WithTimeWidensUntilNothingIsDropped) {
   const World world = grid_world("..#..\n.....\n#.#.#\n.....\n..#..\n");
-  const auto ample = std::chrono::hours(1);
   int improved = 0;
   for (const NodeId node : world.valid_nodes()) {
-    const SearchStart start = search_start(world, node, 20);
-    const int optimum = 1 + *exact_gain(start);
-    const Plan narrow = BeamPolicy({.width = 1, .branching = 1}).plan(start);
-    improved += visited_after(start, narrow.walk) < optimum;
-    const Plan wide = BeamPolicy({.width = 1, .branching = 1}, ample).plan(start);
+    const Task task{.view = world, .start = node, .budget = 20};
+    const double optimum = *exact_prize(task);
+    BeamPlanner beam({.width = 1, .branching = 1});
+    improved += beam.plan(task).prize < optimum;
+    const Plan wide = beam.plan(task, ample());
     EXPECT_TRUE(wide.optimal);
-    EXPECT_EQ(visited_after(start, wide.walk), optimum);
-    const Plan exact = ExactPolicy(ample).plan(start);
+    EXPECT_EQ(wide.prize, optimum);
+    const Plan exact = ExactPlanner().plan(task, ample());
     EXPECT_TRUE(exact.optimal);
-    EXPECT_EQ(visited_after(start, exact.walk), optimum);
+    EXPECT_EQ(exact.prize, optimum);
   }
   EXPECT_GT(improved, 0) << "a beam of one never goes astray here: the test shows nothing";
 }
 
-TEST(Beam, WithoutTimeKeepsItsFirstWalk) {
-  const World world = grid_world("..#..\n.....\n#.#.#\n.....\n..#..\n");
-  const SearchStart start = search_start(world, 0, 20);
-  EXPECT_FALSE(beam_plan(start, {}, std::chrono::steady_clock::now()));
-  const Plan narrow = BeamPolicy({.width = 1}, std::chrono::seconds(0)).plan(start);
-  EXPECT_EQ(narrow.walk, BeamPolicy({.width = 1}).plan(start).walk);
+// Once the time is up, whatever they are at, planners give a walk that can be walked.
+TEST(Planners, GiveWhatTheyHaveWhenTheTimeIsUp) {
+  const World world = split_world({"obstacles", 60}, Split::kValidation, 0);
+  const Task task{.view = world, .start = world.valid_nodes()[0], .budget = 1.0 * world.valid_count()};
+  for (const char* const name : {"dfs", "nearest", "beam", "guided", "explorer", "exact"}) {
+    const auto planner = make_planner(name);
+    const Plan plan = planner->plan(task, std::chrono::steady_clock::now());
+    Episode episode(world, {.budget = task.budget});
+    follow_walk(episode, plan.walk);
+    EXPECT_EQ(episode.visited_count(), plan.visited) << name;
+    EXPECT_FALSE(plan.optimal) << name;
+    EXPECT_LT(plan.visited, world.valid_count() / 2) << name;
+  }
 }
 
 TEST(Baselines, FollowOneWayStreetsAndCosts) {
@@ -253,13 +395,11 @@ TEST(Baselines, FollowOneWayStreetsAndCosts) {
   const std::vector<Edge> edges = {{0, 1, 1}, {1, 2, 1}, {2, 0, 1}, {1, 3, 5}, {3, 1, 1}};
   const World world("streets", Graph::from_edges(4, edges, EdgeKind::kDirected), std::vector<bool>(4));
   const auto walk_of = [&](const char* name, double budget) {
-    const NodeId start = 0;
-    const EpisodeOptions options{.budget = budget, .action_space = ActionSpace::kNeighbours};
-    return roll_out(world, std::span(&start, 1), options, *make_policy(name, 1)).front().walk;
+    return make_planner(name)->plan({.view = world, .start = 0, .budget = budget}).walk;
   };
   EXPECT_EQ(walk_of("dfs", 20), (std::vector<NodeId>{0, 1, 2, 0, 1, 3}));
   EXPECT_EQ(walk_of("nearest", 20), (std::vector<NodeId>{0, 1, 2, 0, 1, 3}));
-  EXPECT_EQ(walk_of("nearest", 8), (std::vector<NodeId>{0, 1, 2, 0, 1})) << "the next step costs 5 of 4";
+  EXPECT_EQ(walk_of("nearest", 8), (std::vector<NodeId>{0, 1, 2})) << "the next first visit costs 7 of 6";
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ struct Probe {
 
 // Adds a random transition; `encoder` is that of its world.
 void add_transition(const PaperFeatureEncoder& encoder, bool terminal, Rng& rng, Probe& probe) {
-  const World& world = encoder.world();
+  const View& world = encoder.view();
   PaperMinibatch& batch = probe.batch;
   Episode episode(world, {.budget = 40, .end_at_full_coverage = true});
   episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);

@@ -48,6 +48,7 @@ Json run_bench() {
   set_threads(1);
   Json json;
   json["signature"] = fmt::format("{:016x}", signature ^ planner_signature());
+  json["signature_learned"] = fmt::format("{:016x}", learned_signature());
   for (std::size_t i = 0; i < kThreadCounts.size(); ++i) {
     json["env_steps_per_s"][std::to_string(kThreadCounts[i])] = median(steps_per_s[i]);
   }
@@ -70,6 +71,7 @@ std::string format_bench(const Json& json) {
     return fmt::format("{:.2f}{}", value.get<double>() * scale, unit);
   };
   std::string text = fmt::format("signature             {}\n", json["signature"].get<std::string>());
+  text += fmt::format("of learned walks      {}\n", json["signature_learned"].get<std::string>());
   const auto line = [&](const char* name, const char* key, double scale, const char* unit) {
     text += fmt::format("{:20}  {} (1 thread)  {} (2 threads)\n", name, number(json[key]["1"], scale, unit),
                         number(json[key]["2"], scale, unit));

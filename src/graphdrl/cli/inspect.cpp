@@ -8,7 +8,7 @@
 #include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
-#include "graphdrl/planners/explorer_policy.h"
+#include "graphdrl/planners/explorer.h"
 #include "graphdrl/planners/paper_policy.h"
 
 namespace graphdrl {
@@ -37,8 +37,8 @@ std::vector<InspectedStep> inspect_walk(PaperPolicy& policy, const InspectOption
   std::vector<InspectedStep> steps;
   follow_walk(episode, options.walk, [&](const Observation& observation) {
     InspectedStep step{.position = observation.position, .features = {}, .q = {}, .legal = {}};
-    step.features.resize(static_cast<std::size_t>(world.graph().node_count()) * kPaperFeatureCount);
-    policy.encoder_for(world).encode(observation.position, observation.visits, std::span(step.features));
+    step.features.resize(static_cast<std::size_t>(world.node_count()) * kPaperFeatureCount);
+    policy.encoder_for(*observation.view).encode(observation.position, observation.visits, std::span(step.features));
     policy.q_values({&observation, 1}, step.q);
     for (int action = 0; action < kActionCount; ++action) {
       step.legal[action] = observation.legal(action);
@@ -69,24 +69,25 @@ struct ExplorerStep {
   std::size_t choice = 0;        // the place of the first visit it makes
 };
 
-std::vector<ExplorerStep> inspect_walk(ExplorerGuide& guide, const World& world, const InspectOptions& options) {
+std::vector<ExplorerStep> inspect_walk(ExplorerScorer& scorer, const World& world, const InspectOptions& options) {
   const double budget = Budget::parse(options.budget).cost_in(world);
   Episode episode(world, {.budget = budget, .action_space = action_space_of(world)});
   std::vector<ExplorerStep> steps;
   follow_walk(episode, options.walk, [&](const Observation& observation) {
-    std::vector<bool> visited;
-    for (NodeId node = 0; node < world.graph().node_count(); ++node) visited.push_back(observation.visited(node));
-    const std::vector<std::uint64_t> bits = bits_of(visited);
-    ExplorerStep step{.position = observation.position, .visits = {}, .seen = {}, .shortfall = {}};
-    const auto visits = guide.encoder_for(world).append(
-        {.visited = bits.data(), .position = observation.position, .spendable = observation.spendable}, kExplorerScope,
-        step.seen);
+    NodeSet visited(world.node_count());
+    for (const NodeId node : observation.walk) visited.insert(node);
+    steps.push_back({.position = observation.position, .visits = {}, .seen = {}, .shortfall = {}});
+    ExplorerStep& step = steps.back();
+    const auto visits = scorer.encoder().append(*observation.view,
+                                                {.visited = visited,
+                                                 .visited_count = observation.visited_count,
+                                                 .position = observation.position,
+                                                 .spendable = observation.spendable},
+                                                kExplorerScope, step.seen);
     step.visits.assign(visits.begin(), visits.end());
-    if (!visits.empty()) {
-      guide.score(step.seen, step.shortfall);
-      step.choice = guide.choose(world, step.seen, visits);
-    }
-    steps.push_back(std::move(step));
+    if (visits.empty()) return;
+    scorer.shortfalls(step.seen, step.shortfall);
+    step.choice = scorer.choose(*observation.view, step.seen, visits);
   });
   return steps;
 }
@@ -199,9 +200,8 @@ void inspect(const InspectOptions& options) {
     std::vector<ExplorerStep> steps;
     if (!options.walk.empty()) {
       const World world = load_one_world(options.map);
-      ExplorerGuide guide(explorer);
-      steps = inspect_walk(guide, world, options);
-      for (ExplorerStep& step : steps) step.seen.graphs.clear();  // they end with the guide
+      ExplorerScorer scorer(explorer);
+      steps = inspect_walk(scorer, world, options);
     }
     print(ExplorerParameters::specs(), steps, options);
     return;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <memory>
+#include <stdexcept>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
@@ -15,77 +16,100 @@
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/report/map_drawing.h"
+#include "graphdrl/report/progress.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr std::int64_t kMaxPlanSteps = 10'000'000;  // a plan is printed step by step
+// Of a time limit: the bound may take a share of it before planning, and what comes after planning has the rest.
+constexpr double kBoundShare = 0.3;
+constexpr double kPlanShare = 0.97;
+constexpr double kProgressAfterS = 1;
+constexpr double kMostSeconds = 1e6;
 
 struct PlanOptions {
   std::string map;
   std::string budget;
   std::string start;
+  std::string end = "anywhere";
   std::string policy = "explorer";
   std::optional<double> time_limit_s;
   std::uint64_t seed = 1;
   bool json = false;
 };
 
-struct PlannedWalk {
-  std::vector<NodeId> walk;  // up to its last first visit
-  int visited;
-  double cost;
-  int most;  // visited nodes of any walk, at most
-  bool optimal;
-  int unreachable;  // valid nodes that no walk can reach
+// A plan, and what is said beside it.
+struct Answer {
+  Plan plan;
+  int max_visited;  // by any walk, at most; where there are no prizes
+  int unreachable;  // valid nodes that no walk can reach, whatever it spends
   double elapsed_s;
 };
 
-// Drops what comes after the last first visit: nothing is left that the policy could have had.
-void cut_after_last_visit(const World& world, std::vector<NodeId>& walk) {
-  std::vector<bool> seen(world.graph().node_count());
-  std::size_t length = 0;
-  for (std::size_t i = 0; i < walk.size(); ++i) {
-    if (seen[walk[i]]) continue;
-    seen[walk[i]] = true;
-    length = i + 1;
-  }
-  walk.resize(length);
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-PlannedWalk make_plan(const World& world, NodeId start, double budget, const PlanOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  TimeLimit limit;
-  if (options.time_limit_s) limit = std::chrono::duration<double>(*options.time_limit_s);
-  const auto policy = make_policy(options.policy, options.seed, limit);
-  const SearchStart from = search_start(world, start, budget);
-  const EpisodeOptions episode{.budget = budget, .action_space = action_space_of(world)};
-  PlannedWalk result{};
-  result.most = max_visited(from);
-  if (auto* const planner = dynamic_cast<PlanPolicy*>(policy.get())) {
-    Plan plan = planner->plan(from);
-    result.walk = std::move(plan.walk);
-    result.optimal = plan.optimal;
-  } else {
-    result.walk = roll_out(world, std::span(&start, 1), episode, *policy).front().walk;
-    cut_after_last_visit(world, result.walk);
-  }
-  // Nothing is believed that cannot be walked.
-  Episode check(world, episode);
-  follow_walk(check, result.walk);
-  result.visited = check.visited_count();
-  result.cost = check.spent();
-  result.optimal = result.optimal || result.visited >= result.most;
-  if (result.optimal) result.most = result.visited;
+// A bar on standard error once a plan takes a while.
+class PlanDisplay {
+ public:
+  explicit PlanDisplay(const World& world) : valid_count_(world.valid_count()), display_(stderr, "visited", 0) {}
+  ~PlanDisplay() { display_.finish(); }
 
+  void show(const PlanProgress& progress) {
+    if (seconds_since(begin_) < kProgressAfterS) return;
+    display_.show(progress.visited, valid_count_, "nodes visited");
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  int valid_count_;
+  ProgressDisplay display_;
+};
+
+int count_unreachable(const World& world, NodeId start) {
   int reached = 1;
-  NearestFirst(world.open()).run(start, std::numeric_limits<double>::infinity(), [&](NodeId, double) {
+  NearestFirst().run(world.open(), start, kNoLimit, [&](NodeId, double) {
     ++reached;
     return NearestFirst::Next::kThrough;
   });
-  result.unreachable = world.valid_count() - reached;
-  result.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return result;
+  return world.valid_count() - reached;
+}
+
+// Nothing is believed that cannot be walked.
+void check_plan(const World& world, const Task& task, const Plan& plan) {
+  const End end = task.ends_anywhere() ? End::anywhere() : End::at(task.end);
+  Episode episode(world, {.budget = task.budget, .end = end, .action_space = action_space_of(world)});
+  follow_walk(episode, plan.walk);
+  const bool ends_well = task.ends_anywhere() || episode.position() == task.end;
+  if (!ends_well || episode.visited_count() != plan.visited) throw std::logic_error("the plan is not what it says");
+}
+
+Answer make_plan(const World& world, const Task& task, const PlanOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto deadline = [&](double share) -> Deadline {
+    if (!options.time_limit_s) return std::nullopt;
+    return begin + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                       std::chrono::duration<double>(share * *options.time_limit_s));
+  };
+  PlanDisplay display(world);
+  const Report report = [&](const PlanProgress& progress) { display.show(progress); };
+  Answer answer{};
+  const double bound = max_prize(task, deadline(kBoundShare));
+  if (const auto planner = make_planner(options.policy)) {
+    answer.plan = planner->plan(task, deadline(kPlanShare), report);
+  } else {
+    answer.plan = plan_by_steps(world, task, *make_policy(options.policy, options.seed), deadline(kPlanShare), report);
+  }
+  Plan& plan = answer.plan;
+  check_plan(world, task, plan);
+  plan.bound = std::min(plan.bound, bound);
+  plan.optimal = plan.optimal || plan.prize >= plan.bound;
+  if (plan.optimal) plan.bound = plan.prize;
+  answer.max_visited = static_cast<int>(plan.bound);
+  answer.unreachable = count_unreachable(world, task.start);
+  answer.elapsed_s = seconds_since(begin);
+  return answer;
 }
 
 std::string name_of(const World& world, NodeId node) {
@@ -95,13 +119,15 @@ std::string name_of(const World& world, NodeId node) {
   return fmt::format("node {} (row {}, column {})", node, cell.row, cell.col);
 }
 
-Json to_json(const World& world, const PlanOptions& options, double budget, const PlannedWalk& plan) {
-  const double percent = 100.0 / world.valid_count();
+Json to_json(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
+  const Plan& plan = answer.plan;
+  const double percent = 100.0 / world.total_prize();
   Json json;
   json["map"] = world.name();
   json["policy"] = policy_label(options.policy);
   json["start"] = plan.walk.front();
-  json["budget"] = budget;
+  json["end"] = task.ends_anywhere() ? Json() : Json(task.end);
+  json["budget"] = task.budget;
   json["walk"] = plan.walk;
   if (world.is_grid()) {
     json["walk_cells"] = Json::array();
@@ -115,28 +141,49 @@ Json to_json(const World& world, const PlanOptions& options, double budget, cons
     for (const NodeId node : plan.walk) json["walk_labels"].push_back(world.labels()[node]);
   }
   json["visited"] = plan.visited;
-  json["coverage"] = percent * plan.visited;
+  json["coverage"] = 100.0 * plan.visited / world.valid_count();
+  if (world.has_prizes()) json["prize"] = plan.prize;
   json["cost"] = plan.cost;
-  json["upper_bound"] = percent * plan.most;
-  json["gap"] = percent * (plan.most - plan.visited);
+  json["upper_bound"] = percent * plan.bound;
+  if (world.has_prizes()) {
+    json["max_prize"] = plan.bound;
+  } else {
+    json["max_visited"] = answer.max_visited;
+  }
+  json["gap"] = percent * (plan.bound - plan.prize);
   json["optimal"] = plan.optimal;
-  json["unreachable"] = plan.unreachable;
-  json["elapsed_s"] = plan.elapsed_s;
+  json["unreachable"] = answer.unreachable;
+  json["elapsed_s"] = answer.elapsed_s;
   return json;
 }
 
-std::string format_plan(const World& world, const PlanOptions& options, double budget, const PlannedWalk& plan) {
-  const double percent = 100.0 / world.valid_count();
-  std::string text = fmt::format("{}, {} from {}, budget {:g}\n", world.name(), policy_label(options.policy),
-                                 name_of(world, plan.walk.front()), budget);
+std::string format_bound(const World& world, const Answer& answer) {
+  const Plan& plan = answer.plan;
+  const double percent = 100.0 / world.total_prize();
+  const char* const what = world.has_prizes() ? "is worth more" : "visits more";
+  if (plan.optimal) return fmt::format("optimal  no walk {}\n", what);
+  const std::string most =
+      world.has_prizes() ? fmt::format("{:g}", plan.bound) : fmt::format("{} nodes", answer.max_visited);
+  return fmt::format("bound    no walk {} than {}, {:.1f} %: the gap is {:.1f} points\n", what, most,
+                     percent * plan.bound, percent * (plan.bound - plan.prize));
+}
+
+std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
+  const Plan& plan = answer.plan;
+  std::string text =
+      fmt::format("{}, {} from {}", world.name(), policy_label(options.policy), name_of(world, plan.walk.front()));
+  if (!task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, task.end));
+  text += fmt::format(", budget {:g}\n", task.budget);
   text += fmt::format("visited  {} of {} nodes, {:.1f} %, for {:g}\n", plan.visited, world.valid_count(),
-                      percent * plan.visited, plan.cost);
-  text += plan.optimal ? "optimal  no walk visits more\n"
-                       : fmt::format("bound    no walk visits more than {} nodes, {:.1f} %: the gap is {:.1f} points\n",
-                                     plan.most, percent * plan.most, percent * (plan.most - plan.visited));
-  if (plan.unreachable > 0) {
-    text += fmt::format("         {} node{} cannot be reached from there\n", plan.unreachable,
-                        plan.unreachable == 1 ? "" : "s");
+                      100.0 * plan.visited / world.valid_count(), plan.cost);
+  if (world.has_prizes()) {
+    text += fmt::format("prize    {:g} of {:g}, {:.1f} %\n", plan.prize, world.total_prize(),
+                        100.0 * plan.prize / world.total_prize());
+  }
+  text += format_bound(world, answer);
+  if (answer.unreachable > 0) {
+    text += fmt::format("         {} node{} cannot be reached from there\n", answer.unreachable,
+                        answer.unreachable == 1 ? "" : "s");
   }
   std::vector<std::string> names;
   for (const NodeId node : plan.walk) {
@@ -147,26 +194,30 @@ std::string format_plan(const World& world, const PlanOptions& options, double b
   return text;
 }
 
+End parse_end(const World& world, const std::string& text) {
+  if (text == "anywhere") return End::anywhere();
+  if (text == "start") return End::at_start();
+  return End::at(parse_start(world, text));
+}
+
 void plan(const PlanOptions& options) {
-  const World world = load_one_world(options.map);
-  const NodeId start = options.start.empty() ? world.valid_nodes().front() : parse_start(world, options.start);
-  const double budget = Budget::parse(options.budget).cost_in(world);
-  if (budget > kMaxPlanSteps * world.open().mean_cost()) {
-    throw Error({.what = "the budget is too large to plan for",
-                 .expected = fmt::format("at most {:g}", kMaxPlanSteps * world.open().mean_cost()),
-                 .got = options.budget});
-  }
-  if (options.time_limit_s && !(*options.time_limit_s >= 0 && *options.time_limit_s <= 1e6)) {
+  if (options.time_limit_s && !(*options.time_limit_s >= 0 && *options.time_limit_s <= kMostSeconds)) {
     throw Error({.what = "bad time limit",
-                 .expected = "0 to 1000000 seconds",
+                 .expected = fmt::format("0 to {:.0f} seconds", kMostSeconds),
                  .got = fmt::format("{}", *options.time_limit_s),
                  .where = "--time-limit"});
   }
-  const PlannedWalk result = make_plan(world, start, budget, options);
+  const World world = load_one_world(options.map);
+  const NodeId start = options.start.empty() ? world.valid_nodes().front() : parse_start(world, options.start);
+  const Task task{.view = world,
+                  .start = start,
+                  .budget = Budget::parse(options.budget).cost_in(world),
+                  .end = parse_end(world, options.end).of(start)};
+  const Answer answer = make_plan(world, task, options);
   if (options.json) {
-    print_json(to_json(world, options, budget, result));
+    print_json(to_json(world, task, options, answer));
   } else {
-    print_text(format_plan(world, options, budget, result));
+    print_text(format_plan(world, task, options, answer));
   }
 }
 
@@ -185,13 +236,18 @@ void add_plan_command(CLI::App& app) {
   command->add_option("--start", options->start, "A node id, a label, or row,col; the default is the first valid node")
       ->check(not_empty())
       ->type_name("S");
+  command->add_option("--end", options->end, "Where the walk must end: anywhere, start, or a node as for --start")
+      ->check(not_empty())
+      ->type_name("E")
+      ->capture_default_str();
   CLI::Option* const policy =
       command->add_option("--policy", options->policy, policy_names() + "; guided with a time limit")
           ->type_name("P")
           ->capture_default_str();
   command
-      ->add_option("--time-limit", options->time_limit_s,
-                   "Seconds for a better plan: wider and wider beams, or an exact search with a beam to fall back on")
+      ->add_option(
+          "--time-limit", options->time_limit_s,
+          "Seconds for a plan, the bound included: beams search wider and wider, others stop with what they have")
       ->type_name("S");
   command->add_option("--seed", options->seed, "For random policies")
       ->check(CLI::NonNegativeNumber)

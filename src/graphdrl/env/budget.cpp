@@ -28,9 +28,10 @@ Budget Budget::parse(std::string_view text) {
 double Budget::cost_in(const World& world) const {
   const double mean_cost = world.open().mean_cost();
   const double cost = relative_ ? std::floor(value_ * world.valid_count() + 1e-9) * mean_cost : value_;
-  if (cost <= static_cast<double>(kMaxBudget) * mean_cost) return cost;
+  const double most = static_cast<double>(kMaxSteps) * mean_cost;
+  if (cost <= most) return cost;
   throw Error({.what = "bad budget",
-               .expected = fmt::format("at most {:g}", static_cast<double>(kMaxBudget) * mean_cost),
+               .expected = fmt::format("at most {:g}: a walk has at most {} steps, and stays in memory", most, kMaxSteps),
                .got = fmt::format("{} = {:g}", text_, cost),
                .where = world.name()});
 }

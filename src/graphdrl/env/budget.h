@@ -5,11 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "graphdrl/env/world.h"
+#include "graphdrl/env/task.h"
 
 namespace graphdrl {
-
-inline constexpr std::int64_t kMaxBudget = 1'000'000'000;  // mean edges; an episode keeps its walk in memory
 
 // "25", in units of cost, or "1.1x": floor(1.1 · n + 1e-9) times the mean cost of an edge in a world of n valid nodes.
 // Where edges have no costs, a unit is a step.
@@ -18,7 +16,7 @@ class Budget {
   // Throws Error on anything but a number from 0 up, with or without the x.
   static Budget parse(std::string_view text);
 
-  double cost_in(const World& world) const;  // throws Error where that is more than kMaxBudget
+  double cost_in(const World& world) const;  // throws Error where that is more than kMaxSteps mean edges
   const std::string& text() const { return text_; }
 
  private:

@@ -6,11 +6,16 @@
 #include <cmath>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 
 Episode::Episode(const World& world, const EpisodeOptions& options)
-    : world_(&world), options_(options), visits_(world.graph().node_count()) {
+    : world_(world),
+      view_(world),
+      options_(options),
+      limit_(world.spending_limit(options.budget)),
+      visits_(world.node_count()) {
   if (!(options.budget >= 0) || !std::isfinite(options.budget)) {
     throw Error({.what = "bad budget", .expected = "a number from 0 up", .got = fmt::format("{}", options.budget)});
   }
@@ -20,35 +25,33 @@ Episode::Episode(const World& world, const EpisodeOptions& options)
 }
 
 void Episode::reset(NodeId start) {
-  if (start < 0 || start >= world_->graph().node_count()) {
-    throw Error({.what = "start outside the world",
-                 .expected = fmt::format("a node from 0 to {}", world_->graph().node_count() - 1),
-                 .got = fmt::format("{}", start),
-                 .where = world_->name()});
-  }
-  if (world_->is_blocked(start)) {
-    throw Error({.what = "start on an obstacle",
-                 .expected = "a valid node",
-                 .got = fmt::format("node {}", start),
-                 .where = world_->name()});
-  }
+  const NodeId end = options_.end.of(start);
+  check(Task{.view = view_, .start = start, .budget = options_.budget, .end = end});
+  if (end != kNoNode && end != end_) cost_to_end_ = costs_to(world_.into(), end);
+  end_ = end;
   std::fill(visits_.begin(), visits_.end(), 0);
   walk_.assign(1, start);
+  walk_hash_ = extended_walk_hash(kEmptyWalkHash, start);
   position_ = start;
   visits_[start] = 1;
   visited_count_ = 1;
+  prize_ = world_.prize(start);
   spent_ = 0;
 }
 
 StepResult Episode::step(int action) {
-  const NodeId next = observation().target(action);
-  const double cost = observation().cost(action);
+  const bool directions = options_.action_space == ActionSpace::kDirections;
+  const NodeId next =
+      directions ? world_.direction_target(position_, action) : world_.open_neighbours(position_)[action];
+  const double cost = directions ? 1.0 : world_.open().cost(position_, action);
   const bool blocked = next == position_;
   const std::uint32_t visits_before = visits_[next]++;
   const bool first_visit = visits_before == 0;
   visited_count_ += first_visit;
+  if (first_visit) prize_ += world_.prize(next);
   position_ = next;
   walk_.push_back(next);
+  walk_hash_ = extended_walk_hash(walk_hash_, next);
   spent_ += cost;
   return {.reward = reward_of(blocked, visits_before), .blocked = blocked, .first_visit = first_visit};
 }
@@ -56,32 +59,35 @@ StepResult Episode::step(int action) {
 double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
   const bool first_visit = visits_before == 0;
   const double bonus = first_visit && terminal() ? kFullCoverageBonus : 0.0;
-  if (options_.reward == RewardKind::kCoverageGain) return first_visit ? 1.0 / world_->valid_count() + bonus : 0.0;
+  if (options_.reward == RewardKind::kCoverageGain) return first_visit ? 1.0 / world_.valid_count() + bonus : 0.0;
   if (first_visit) return kFirstVisitReward + bonus;
   if (!blocked) return kRevisitReward * visits_before;
   return kBlockedReward + (options_.punish_blocked_by_visits ? kRevisitReward * visits_before : 0.0);
 }
 
 bool Episode::done() const {
-  if (terminal()) return true;
-  const double left = spending_limit(options_.budget) - spent_;
-  if (options_.action_space == ActionSpace::kDirections) return left < 1;
-  const Graph& open = world_->open();
-  for (int i = 0; i < open.degree(position_); ++i) {
-    if (open.cost(position_, i) <= left) return false;
+  if (terminal() || std::ssize(walk_) > kMaxSteps) return true;
+  if (options_.action_space == ActionSpace::kDirections && end_ == kNoNode) return limit_ - spent_ < 1;
+  const Observation now = observation();
+  for (int action = 0; action < now.action_count(); ++action) {
+    if (now.affordable(action)) return false;
   }
   return true;
 }
 
 Observation Episode::observation() const {
-  return {.world = world_,
+  return {.view = &view_,
           .action_space = options_.action_space,
           .position = position_,
+          .end = end_,
           .visits = visits_,
           .walk = walk_,
+          .walk_hash = walk_hash_,
           .visited_count = visited_count_,
-          .budget_left = options_.budget - spent_,
-          .spendable = spending_limit(options_.budget) - spent_};
+          .budget = options_.budget,
+          .spent = spent_,
+          .spendable = limit_ - spent_,
+          .cost_to_end = end_ == kNoNode ? std::span<const double>() : std::span<const double>(cost_to_end_)};
 }
 
 }  // namespace graphdrl

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "graphdrl/env/observation.h"
-#include "graphdrl/env/world.h"
+#include "graphdrl/env/task.h"
 
 namespace graphdrl {
 
@@ -17,7 +17,8 @@ enum class RewardKind {
 
 // The defaults are the paper's.
 struct EpisodeOptions {
-  double budget = 25;  // in units of cost
+  double budget = 25;         // in units of cost
+  End end = End::anywhere();  // moves after which it cannot be reached within the budget are masked
   ActionSpace action_space = ActionSpace::kDirections;
   RewardKind reward = RewardKind::kVisitPenalty;
   // Differs from the paper: its author's code ends an episode at full coverage, with a bonus …
@@ -37,44 +38,52 @@ struct StepResult {
   bool first_visit;  // the node entered was unvisited
 };
 
-// One walk. Not thread safe; the world must outlive it. step() is O(1) and allocates nothing but the growing walk.
+// One walk. Not thread safe. step() is O(1) and allocates nothing but the growing walk.
 class Episode {
  public:
   // Throws Error on a budget below 0 or not a number, and on directions in a world that is no grid.
   Episode(const World& world, const EpisodeOptions& options);
 
-  // Begins a new walk. Throws Error on a start that is blocked or not in the world.
+  // Begins a new walk. Throws Error on a start or end that is blocked or not in the world, and on an end out of reach.
   void reset(NodeId start);
 
   // REQUIRES: !done(), 0 <= action < observation().action_count(), and the action can be paid for.
   StepResult step(int action);
 
-  // The budget is spent, or the state is terminal, or there is nowhere to go.
+  // The budget is spent, or the state is terminal, or there is nowhere to go, or the walk has kMaxSteps steps. Where
+  // the walk must end at a node, it is there.
   bool done() const;
 
   // Reached full coverage with end_at_full_coverage: nothing follows. A spent budget is no terminal state, only a
   // truncation: eq. 5 bootstraps there.
   bool terminal() const { return options_.end_at_full_coverage && all_visited(); }
 
-  const World& world() const { return *world_; }
+  const World& world() const { return world_; }
   Observation observation() const;
   NodeId position() const { return position_; }
   const std::vector<std::uint32_t>& visits() const { return visits_; }
   const std::vector<NodeId>& walk() const { return walk_; }
   int visited_count() const { return visited_count_; }
-  double coverage() const { return static_cast<double>(visited_count_) / world_->valid_count(); }  // eq. 1
-  double spent() const { return spent_; }                                                          // units of cost
+  double coverage() const { return static_cast<double>(visited_count_) / world_.valid_count(); }  // eq. 1
+  double prize() const { return prize_; }  // of the nodes visited
+  double spent() const { return spent_; }  // units of cost
 
  private:
-  bool all_visited() const { return visited_count_ == world_->valid_count(); }
+  bool all_visited() const { return visited_count_ == world_.valid_count(); }
   double reward_of(bool blocked, std::uint32_t visits_before) const;
 
-  const World* world_;
+  World world_;
+  View view_;
   EpisodeOptions options_;
+  double limit_;  // what may be spent in all
+  NodeId end_ = kNoNode;
+  std::vector<double> cost_to_end_;  // [N]; empty where the walk may end anywhere
   NodeId position_ = kNoNode;
   std::vector<std::uint32_t> visits_;  // [N]
   std::vector<NodeId> walk_;
+  std::uint64_t walk_hash_ = 0;
   int visited_count_ = 0;
+  double prize_ = 0;
   double spent_ = 0;
 };
 

@@ -16,10 +16,10 @@ int parse_index(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? value : -1;
 }
 
-World make_world(const NamedMap& named) {
-  if (const auto* const grid = std::get_if<GridMap>(&named.map)) return World(named.name, *grid);
-  const auto& map = std::get<GraphMap>(named.map);
-  return World(named.name, map.graph, map.blocked, map.labels);
+World make_world(NamedMap named) {
+  if (auto* const grid = std::get_if<GridMap>(&named.map)) return World(named.name, std::move(*grid));
+  auto& map = std::get<GraphMap>(named.map);
+  return World(named.name, std::move(map.graph), std::move(map.blocked), std::move(map.labels));
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ World make_world(const NamedMap& named) {
 std::vector<World> load_worlds(const std::vector<std::string>& sources) {
   std::vector<World> worlds;
   for (const std::string& source : sources) {
-    for (const NamedMap& named : load_maps(source)) worlds.push_back(make_world(named));
+    for (NamedMap& named : load_maps(source)) worlds.push_back(make_world(std::move(named)));
   }
   return worlds;
 }
@@ -45,8 +45,8 @@ NodeId parse_start(const World& world, std::string_view text) {
     const Cell cell{parse_index(text.substr(0, comma)), parse_index(text.substr(comma + 1))};
     if (world.map()->contains(cell)) node = world.map()->node(cell);
   }
-  if (node < 0 || node >= world.graph().node_count() || world.is_blocked(node)) {
-    const bool obstacle = node >= 0 && node < world.graph().node_count();
+  if (node < 0 || node >= world.node_count() || world.is_blocked(node)) {
+    const bool obstacle = node >= 0 && node < world.node_count();
     throw Error({.what = obstacle ? "start on an obstacle" : "start outside the map",
                  .expected = "a valid node's id, label or row,col",
                  .got = in_quotes(text),

@@ -3,6 +3,7 @@
 namespace graphdrl {
 
 int Observation::action_to(NodeId next) const {
+  if (action_space == ActionSpace::kNeighbours) return view->open().index_of(position, next);
   for (int action = 0; action < action_count(); ++action) {
     if (target(action) == next) return action;
   }

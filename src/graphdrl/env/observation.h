@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "graphdrl/env/world.h"
+#include "graphdrl/env/view.h"
 
 namespace graphdrl {
 
@@ -18,52 +18,65 @@ inline ActionSpace action_space_of(const World& world) {
   return world.is_grid() ? ActionSpace::kDirections : ActionSpace::kNeighbours;
 }
 
-inline constexpr int kNoAction = -1;
+inline constexpr int kNoAction = -1;  // no action leads there
 
 // An answer of a policy that would rather end the episode than walk on.
-inline constexpr int kStop = -1;
-
-// What may be spent of a budget in all: sums of costs may be off by rounding.
-inline double spending_limit(double budget) {
-  return budget * (1 + 1e-9);
-}
+inline constexpr int kStop = -2;
 
 // A view into an episode, valid until its next step.
 struct Observation {
-  const World* world;
+  const View* view;
   ActionSpace action_space;
   NodeId position;
+  NodeId end;                             // where the walk must end; kNoNode: anywhere
   std::span<const std::uint32_t> visits;  // [N]; the start counts, a blocked move counts for the node stayed on
   std::span<const NodeId> walk;           // every position so far, the start first; a blocked move repeats its node
+  std::uint64_t walk_hash;                // of the walk: extended_walk_hash() of each position
   int visited_count;                      // valid nodes visited
-  double budget_left;                     // in units of cost
-  double spendable;                       // the same with room for the rounding of sums
+  double budget;                          // of the whole walk, in units of cost
+  double spent;
+  double spendable;                     // what is left, with room for the rounding of sums
+  std::span<const double> cost_to_end;  // [N]; empty where the walk may end anywhere
 
   bool visited(NodeId node) const { return visits[node] > 0; }
-  bool all_visited() const { return visited_count == world->valid_count(); }
+  bool all_visited() const { return visited_count == view->valid_count(); }
 
   int action_count() const {
     return static_cast<int>(action_space == ActionSpace::kDirections ? kAllDirections.size()
-                                                                     : world->open_neighbours(position).size());
+                                                                     : view->open_neighbours(position).size());
   }
 
   // Where an action leads; the current node itself where the move is blocked.
   NodeId target(int action) const {
-    return action_space == ActionSpace::kDirections ? world->direction_target(position, action)
-                                                    : world->open_neighbours(position)[action];
+    return action_space == ActionSpace::kDirections ? view->direction_target(position, action)
+                                                    : view->open_neighbours(position)[action];
   }
 
   // What an action costs. Directions are of grids, where every move costs 1, blocked or not.
   double cost(int action) const {
-    return action_space == ActionSpace::kDirections ? 1.0 : world->open().cost(position, action);
+    return action_space == ActionSpace::kDirections ? 1.0 : view->open().cost(position, action);
   }
 
-  // The action mask: false where a move would be blocked or costs more than is left. A blocked direction can be chosen
-  // all the same; a move that cannot be paid for cannot.
-  bool legal(int action) const { return target(action) != position && cost(action) <= spendable; }
+  // Whether what is left pays for the action, and for the way to the end after it.
+  bool affordable(int action) const {
+    const double after = cost_to_end.empty() ? 0.0 : cost_to_end[target(action)];
+    return cost(action) + after <= spendable;
+  }
+
+  // The action mask: false where a move would be blocked or cannot be paid for. A blocked direction can be chosen all
+  // the same; a move that cannot be paid for cannot.
+  bool legal(int action) const { return target(action) != position && affordable(action); }
 
   // The first action that leads to `next`; for the current node, the first blocked one. kNoAction where there is none.
   int action_to(NodeId next) const;
 };
+
+// A number of 64 bits for a walk, kept up to date step by step: equal walks have equal ones, and others do not but by
+// a chance of 1 in 2^64.
+inline constexpr std::uint64_t kEmptyWalkHash = 0xcbf29ce484222325ULL;
+inline std::uint64_t extended_walk_hash(std::uint64_t hash, NodeId next) {
+  hash = (hash ^ static_cast<std::uint32_t>(next)) * 0x9e3779b97f4a7c15ULL;
+  return hash ^ (hash >> 29);
+}
 
 }  // namespace graphdrl

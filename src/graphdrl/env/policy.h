@@ -7,8 +7,8 @@
 
 namespace graphdrl {
 
-// Chooses the next move of many episodes at once. May keep random numbers, and caches by world: calls are not thread
-// safe, and the worlds seen must outlive the policy.
+// Chooses the next move of many episodes at once. May keep random numbers and scratch memory: calls are not thread
+// safe.
 class Policy {
  public:
   virtual ~Policy() = default;

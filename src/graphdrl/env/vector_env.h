@@ -11,7 +11,7 @@
 namespace graphdrl {
 
 // Episodes know nothing of each other, so blocks of them are stepped by parallel_for; blocks are cut by size, and
-// results do not depend on the number of threads. Not thread safe; the world must outlive it.
+// results do not depend on the number of threads. Not thread safe.
 class VectorEnv {
  public:
   VectorEnv(const World& world, const EpisodeOptions& options, int count) : episodes_(count, Episode(world, options)) {}

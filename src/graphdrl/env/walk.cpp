@@ -20,7 +20,7 @@ void follow_walk(Episode& episode, std::span<const NodeId> walk,
                    .got = fmt::format("{} at place {}", walk[i], i),
                    .where = episode.world().name()});
     }
-    if (episode.observation().cost(action) > episode.observation().spendable) {
+    if (!episode.observation().affordable(action)) {
       throw Error({.what = "the walk costs more than the budget",
                    .got = fmt::format("step {} from {} to {}", i, episode.position(), walk[i]),
                    .where = episode.world().name()});

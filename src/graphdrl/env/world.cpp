@@ -1,32 +1,63 @@
 #include "graphdrl/env/world.h"
 
+#include <algorithm>
+
 #include "graphdrl/base/error.h"
 
 namespace graphdrl {
 
-World::World(std::string name, const GridMap& map)
-    : name_(std::move(name)), graph_(Graph::grid(map.rows, map.cols)), blocked_(map.blocked), map_(map) {
-  index_nodes();
-  direction_targets_.resize(graph_.node_count());
-  for (NodeId node = 0; node < graph_.node_count(); ++node) {
+World::World(std::string name, GridMap map) {
+  const auto data = std::make_shared<Data>();
+  data->name = std::move(name);
+  data->open = Graph::grid(map.rows, map.cols, map.blocked);
+  data->blocked = map.blocked;
+  data->direction_targets.resize(data->open.node_count());
+  for (NodeId node = 0; node < data->open.node_count(); ++node) {
     for (const Direction direction : kAllDirections) {
       const NodeId next = grid_neighbour(map.rows, map.cols, node, direction);
-      direction_targets_[node][static_cast<int>(direction)] = next == kNoNode || blocked_[next] ? node : next;
+      data->direction_targets[node][static_cast<int>(direction)] = next == kNoNode || map.blocked[next] ? node : next;
     }
   }
+  data->map = std::move(map);
+  index_nodes(*data);
+  data_ = data;
 }
 
-World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels)
-    : name_(std::move(name)), graph_(std::move(graph)), blocked_(std::move(blocked)), labels_(std::move(labels)) {
-  index_nodes();
-}
-
-void World::index_nodes() {
-  for (NodeId node = 0; node < graph_.node_count(); ++node) {
-    if (!blocked_[node]) valid_nodes_.push_back(node);
+World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels,
+             std::vector<double> prizes) {
+  const auto data = std::make_shared<Data>();
+  data->name = std::move(name);
+  data->blocked = std::move(blocked);
+  data->labels = std::move(labels);
+  data->prizes = std::move(prizes);
+  const bool any_blocked = std::find(data->blocked.begin(), data->blocked.end(), true) != data->blocked.end();
+  data->open = any_blocked ? graph.without(data->blocked) : std::move(graph);
+  if (any_blocked) data->graph = std::move(graph);
+  if (data->open.directed()) {
+    data->into = data->open.reversed();
+    std::vector<Edge> edges = data->open.edges();
+    for (Edge& edge : edges) edge.cost = 1;
+    data->both_ways = Graph::from_edges(data->open.node_count(), edges);
   }
-  if (valid_nodes_.empty()) throw Error({.what = "the world has no valid node", .where = name_});
-  open_ = graph_.without(blocked_);
+  index_nodes(*data);
+  data_ = data;
+}
+
+void World::index_nodes(Data& data) {
+  for (NodeId node = 0; node < data.open.node_count(); ++node) {
+    if (data.blocked[node]) continue;
+    data.valid_nodes.push_back(node);
+    data.total_prize += data.prizes.empty() ? 1 : data.prizes[node];
+  }
+  if (data.valid_nodes.empty()) throw Error({.what = "the world has no valid node", .where = data.name});
+  data.exact_sums = data.open.integer_costs();
+}
+
+const Graph& World::graph() const {
+  std::call_once(data_->graph_made, [&] {
+    if (data_->map && valid_count() < node_count()) data_->graph = Graph::grid(data_->map->rows, data_->map->cols);
+  });
+  return data_->graph ? *data_->graph : data_->open;
 }
 
 }  // namespace graphdrl

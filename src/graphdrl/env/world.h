@@ -1,7 +1,9 @@
-// A graph with its blocked nodes: what an episode is walked in.
+// A graph with its blocked nodes and prizes: the truth that episodes are walked in.
 #pragma once
 
 #include <array>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,45 +14,75 @@
 
 namespace graphdrl {
 
-// Immutable; any number of episodes and threads may share one, and all hold references to it.
+// A handle to an immutable world: copies share it, and it lives as long as any of them. Any number of threads may use
+// one. It is its own index: what searches need to know of the whole graph (edges turned round, costs) is made once.
 class World {
  public:
   // A grid: has directions and cells. Throws Error where every cell is blocked.
-  World(std::string name, const GridMap& map);
+  World(std::string name, GridMap map);
 
-  // Any graph. Throws Error where every node is blocked. REQUIRES: blocked has a value per node, and so have the labels
-  // where there are any.
-  World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels = {});
+  // Any graph. Prizes are what a first visit of a node is worth; 1 each where there are none. Throws Error where every
+  // node is blocked. REQUIRES: blocked has a value per node, and so have labels and prizes where there are any; prizes
+  // are finite and not negative.
+  World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels = {},
+        std::vector<double> prizes = {});
 
-  const std::string& name() const { return name_; }
-  const Graph& graph() const { return graph_; }  // with its blocked nodes
-  const std::optional<GridMap>& map() const { return map_; }
-  const std::vector<bool>& blocked() const { return blocked_; }
-  bool is_blocked(NodeId node) const { return blocked_[node]; }
-  bool is_grid() const { return map_.has_value(); }
-  const std::vector<std::string>& labels() const { return labels_; }  // what users call the nodes; mostly empty
+  const std::string& name() const { return data_->name; }
+  NodeId node_count() const { return data_->open.node_count(); }
+  const std::optional<GridMap>& map() const { return data_->map; }
+  const std::vector<bool>& blocked() const { return data_->blocked; }
+  bool is_blocked(NodeId node) const { return data_->blocked[node]; }
+  bool is_grid() const { return data_->map.has_value(); }
+  const std::vector<std::string>& labels() const { return data_->labels; }  // what users call the nodes; mostly empty
 
-  std::span<const NodeId> valid_nodes() const { return valid_nodes_; }  // ascending
-  int valid_count() const { return static_cast<int>(valid_nodes_.size()); }
+  std::span<const NodeId> valid_nodes() const { return data_->valid_nodes; }  // ascending
+  int valid_count() const { return static_cast<int>(data_->valid_nodes.size()); }
+
+  bool has_prizes() const { return !data_->prizes.empty(); }
+  double prize(NodeId node) const { return data_->prizes.empty() ? 1.0 : data_->prizes[node]; }
+  const std::vector<double>& prizes() const { return data_->prizes; }
+  double total_prize() const { return data_->total_prize; }  // of the valid nodes
+
+  // The graph with its blocked nodes. That of a grid is made when it is first asked for.
+  const Graph& graph() const;
 
   // The graph without the edges of blocked nodes: what can be walked.
-  const Graph& open() const { return open_; }
-  std::span<const NodeId> open_neighbours(NodeId node) const { return open_.neighbours(node); }
+  const Graph& open() const { return data_->open; }
+  std::span<const NodeId> open_neighbours(NodeId node) const { return data_->open.neighbours(node); }
+  // The same turned round, and with every edge leading both ways; open() itself where edges lead both ways anyway.
+  const Graph& into() const { return data_->into ? *data_->into : data_->open; }
+  const Graph& both_ways() const { return data_->both_ways ? *data_->both_ways : data_->open; }
 
   // Where a direction leads; the node itself where the move is blocked. REQUIRES: is_grid().
-  NodeId direction_target(NodeId node, int direction) const { return direction_targets_[node][direction]; }
+  NodeId direction_target(NodeId node, int direction) const { return data_->direction_targets[node][direction]; }
+
+  // What may be spent of a budget in all. Where costs are whole numbers that is the budget; else sums of costs may be
+  // off by rounding, so a billionth of it comes on top.
+  double spending_limit(double budget) const { return data_->exact_sums ? budget : budget * (1 + 1e-9); }
+
+  // Whether both are handles to one world.
+  friend bool operator==(const World& one, const World& other) { return one.data_ == other.data_; }
 
  private:
-  void index_nodes();
+  struct Data {
+    std::string name;
+    Graph open;
+    std::optional<Graph> into;       // of directed graphs
+    std::optional<Graph> both_ways;  // likewise
+    std::vector<bool> blocked;
+    std::optional<GridMap> map;
+    std::vector<std::string> labels;
+    std::vector<double> prizes;  // [N]; empty where each is 1
+    double total_prize = 0;
+    bool exact_sums = true;
+    std::vector<NodeId> valid_nodes;
+    std::vector<std::array<NodeId, 4>> direction_targets;  // [N], of grids
+    mutable std::once_flag graph_made;
+    mutable std::optional<Graph> graph;  // with its blocked nodes, where there are any
+  };
+  static void index_nodes(Data& data);
 
-  std::string name_;
-  Graph graph_;
-  std::vector<bool> blocked_;
-  std::optional<GridMap> map_;
-  std::vector<std::string> labels_;
-  Graph open_;
-  std::vector<NodeId> valid_nodes_;
-  std::vector<std::array<NodeId, 4>> direction_targets_;
+  std::shared_ptr<const Data> data_;
 };
 
 }  // namespace graphdrl

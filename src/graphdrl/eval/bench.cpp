@@ -61,7 +61,7 @@ EnvironmentBench bench_environment() {
   std::vector<Runner> runners;
   for (int i = 0; i < kEpisodes; ++i) {
     runners.emplace_back(derive_seed(1, 0, static_cast<std::uint64_t>(i)));
-    runners.back().features.resize(static_cast<std::size_t>(world.graph().node_count()) * kPaperFeatureCount);
+    runners.back().features.resize(static_cast<std::size_t>(world.node_count()) * kPaperFeatureCount);
     reset(world, encoder, runners.back(), env[i]);
   }
   const auto start = Clock::now();
@@ -89,10 +89,12 @@ EnvironmentBench bench_environment() {
   return {.steps_per_s = steps / elapsed_s, .signature = signature.value()};
 }
 
-std::uint64_t planner_signature() {
+namespace {
+
+std::uint64_t signature_of_walks(std::initializer_list<const char*> policies) {
   Signature signature;
   for (const World& world : load_worlds({"paper"})) {
-    for (const char* name : {"random", "random-walk", "dfs", "nearest", "exact"}) {
+    for (const char* const name : policies) {
       const auto policy = make_policy(name, 1);
       for (const RolloutResult& result : roll_out(world, world.valid_nodes(), {}, *policy)) {
         for (const NodeId node : result.walk) signature.add(static_cast<std::uint64_t>(node));
@@ -100,6 +102,16 @@ std::uint64_t planner_signature() {
     }
   }
   return signature.value();
+}
+
+}  // namespace
+
+std::uint64_t planner_signature() {
+  return signature_of_walks({"random", "random-walk", "dfs", "nearest", "beam", "exact"});
+}
+
+std::uint64_t learned_signature() {
+  return signature_of_walks({"explorer", "guided"});
 }
 
 double bench_move_ms() {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <numeric>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/parallel.h"
 #include "graphdrl/base/random.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/exact.h"
@@ -28,61 +31,123 @@ constexpr double kPaperBudget = 25;
 // Purposes of derive_seed: what a map's figures are does not depend on the other policies of the comparison.
 constexpr std::uint64_t kStartSeeds = 1;
 constexpr std::uint64_t kPolicySeeds = 2;
+constexpr std::uint64_t kBlockSeeds = 3;  // of a map's policy seed
 
 // A world with what all policies share on it.
 struct Arena {
-  const World* world;
+  World world;
   double budget;
-  std::vector<NodeId> starts;
+  std::vector<NodeId> starts;     // one per episode
   std::optional<double> optimum;  // percent
 };
 
 std::optional<double> mean_optimum(const Arena& arena) {
-  const int nodes = arena.world->valid_count();
+  const int nodes = arena.world.valid_count();
   if (nodes > kOptimumMaxNodes) return std::nullopt;
-  std::vector<std::optional<double>> by_start(arena.world->graph().node_count());
+  std::map<NodeId, double> by_start;
   double sum = 0;
   for (const NodeId start : arena.starts) {
-    if (!by_start[start]) {
-      const auto gain = exact_gain(search_start(*arena.world, start, arena.budget));
-      if (!gain) return std::nullopt;
-      by_start[start] = 100.0 * (1 + *gain) / nodes;
+    const auto [known, fresh] = by_start.try_emplace(start);
+    if (fresh) {
+      const auto visited = exact_prize({.view = arena.world, .start = start, .budget = arena.budget});
+      if (!visited) return std::nullopt;
+      known->second = 100.0 * *visited / nodes;
     }
-    sum += *by_start[start];
+    sum += known->second;
   }
   return sum / static_cast<double>(arena.starts.size());
+}
+
+std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& options, std::size_t map) {
+  const auto nodes = world.valid_nodes();
+  if (options.all_starts) return {nodes.begin(), nodes.end()};
+  Rng rng(derive_seed(options.seed, kStartSeeds, map));
+  std::vector<NodeId> starts;
+  for (int i = 0; i < options.episodes; ++i) {
+    starts.push_back(nodes[rng.below(static_cast<std::uint32_t>(nodes.size()))]);
+  }
+  return starts;
 }
 
 std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
-    Arena arena{.world = &world, .budget = options.budget.cost_in(world), .starts = {}, .optimum = {}};
-    const auto nodes = world.valid_nodes();
-    if (options.all_starts) {
-      arena.starts.assign(nodes.begin(), nodes.end());
-    } else {
-      Rng rng(derive_seed(options.seed, kStartSeeds, arenas.size()));
-      for (int i = 0; i < options.episodes; ++i) {
-        arena.starts.push_back(nodes[rng.below(static_cast<std::uint32_t>(nodes.size()))]);
-      }
+    if (world.has_prizes()) {
+      throw Error({.what = "evaluate knows no prizes yet", .expected = "graphdrl plan", .where = world.name()});
     }
-    arena.optimum = mean_optimum(arena);
-    arenas.push_back(std::move(arena));
+    arenas.push_back({.world = world,
+                      .budget = options.budget.cost_in(world),
+                      .starts = draw_starts(world, options, arenas.size()),
+                      .optimum = {}});
   }
+  parallel_for(static_cast<int>(arenas.size()), [&](int i) { arenas[i].optimum = mean_optimum(arenas[i]); });
   return arenas;
 }
 
-std::optional<Summary> measure(const Arena& arena, Policy& policy) {
-  const EpisodeOptions options{.budget = arena.budget, .action_space = action_space_of(*arena.world)};
-  std::vector<double> coverages;
-  try {
-    for (const RolloutResult& result : roll_out(*arena.world, arena.starts, options, policy)) {
-      coverages.push_back(100.0 * result.coverage);
+// Episodes that one policy walks side by side, in order of start: a planner plans once for all that start at a node.
+struct Block {
+  int policy;
+  int map;
+  std::vector<int> episodes;
+};
+
+// Planners get their starts one by one, others as many together as pays.
+std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const std::vector<std::string>& policies) {
+  std::vector<Block> blocks;
+  for (int policy = 0; policy < std::ssize(policies); ++policy) {
+    const bool plans = make_planner(policies[policy]) != nullptr;
+    for (int map = 0; map < std::ssize(arenas); ++map) {
+      const std::vector<NodeId>& starts = arenas[map].starts;
+      std::vector<int> order(starts.size());
+      std::iota(order.begin(), order.end(), 0);
+      if (plans) std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return starts[a] < starts[b]; });
+      const int most = block_size(arenas[map].world);
+      bool open = false;
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same_start = i > 0 && starts[order[i]] == starts[order[i - 1]];
+        if (!open || std::ssize(blocks.back().episodes) == most || (plans && !same_start)) {
+          blocks.push_back({.policy = policy, .map = map, .episodes = {}});
+          open = true;
+        }
+        blocks.back().episodes.push_back(order[i]);
+      }
     }
-  } catch (const SearchOutOfReach&) {
-    return std::nullopt;
   }
-  return summarise(coverages);
+  return blocks;
+}
+
+// Percents, by policy, map and episode; an empty one where a policy's search is out of reach.
+using Coverages = std::vector<std::vector<std::vector<double>>>;
+
+Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& options) {
+  Coverages coverages(options.policies.size(), std::vector<std::vector<double>>(arenas.size()));
+  for (auto& of_policy : coverages) {
+    for (std::size_t map = 0; map < arenas.size(); ++map) of_policy[map].resize(arenas[map].starts.size());
+  }
+  const std::vector<Block> blocks = make_blocks(arenas, options.policies);
+  std::vector<std::uint8_t> out_of_reach(blocks.size());
+  parallel_for(static_cast<int>(blocks.size()), [&](int b) {
+    const Block& block = blocks[b];
+    const Arena& arena = arenas[block.map];
+    const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
+    const auto policy = make_policy(options.policies[block.policy],
+                                    derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0])));
+    std::vector<NodeId> starts;
+    for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
+    const EpisodeOptions episode_options{.budget = arena.budget, .action_space = action_space_of(arena.world)};
+    try {
+      const auto results = roll_out(arena.world, starts, episode_options, *policy);
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        coverages[block.policy][block.map][block.episodes[i]] = 100.0 * results[i].coverage;
+      }
+    } catch (const SearchOutOfReach&) {
+      out_of_reach[b] = 1;
+    }
+  });
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (out_of_reach[b] != 0) coverages[blocks[b].policy][blocks[b].map].clear();
+  }
+  return coverages;
 }
 
 // A policy's label; the name as given where two policies would share one.
@@ -127,23 +192,22 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
   if (options.episodes < 1) {
     throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
   }
-  for (const std::string& name : options.policies) make_policy(name, 0);  // a bad name fails before any work
-
-  Comparison comparison{.options = options, .rows = {}, .overall = {}};
   const std::vector<Arena> arenas = make_arenas(worlds, options);
-  for (const std::string& name : options.policies) {
-    const std::string label = unambiguous_label(name, options.policies);
+  const Coverages coverages = measure(arenas, options);
+  Comparison comparison{.options = options, .rows = {}, .overall = {}};
+  for (std::size_t policy = 0; policy < options.policies.size(); ++policy) {
+    const std::string label = unambiguous_label(options.policies[policy], options.policies);
     for (std::size_t map = 0; map < arenas.size(); ++map) {
       const Arena& arena = arenas[map];
-      const auto policy = make_policy(name, derive_seed(options.seed, kPolicySeeds, map));
-      comparison.rows.push_back({.map = arena.world->name(),
+      const std::vector<double>& values = coverages[policy][map];
+      comparison.rows.push_back({.map = arena.world.name(),
                                  .policy = label,
-                                 .valid_nodes = arena.world->valid_count(),
+                                 .valid_nodes = arena.world.valid_count(),
                                  .budget = arena.budget,
                                  .episodes = static_cast<int>(arena.starts.size()),
-                                 .coverage = measure(arena, *policy),
+                                 .coverage = values.empty() ? std::nullopt : std::optional(summarise(values)),
                                  .optimum = arena.optimum,
-                                 .paper = paper_result(arena.world->name(), arena.budget)});
+                                 .paper = paper_result(arena.world.name(), arena.budget)});
     }
     comparison.overall.push_back(summarise_rows(label, std::span(comparison.rows).last(arenas.size())));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "graphdrl/eval/comparison.h"
+#include "graphdrl/planners/exact.h"
 
 namespace graphdrl {
 namespace {
@@ -55,6 +56,17 @@ std::string format_comparison(const Comparison& comparison) {
   for (const ComparisonOverall& overall : comparison.overall) {
     text += fmt::format("{:{}}  {:5} {:>6}  {:>7}\n", overall.policy, name_width, overall.maps, number(overall.mean),
                         overall.ratio_to_optimum ? fmt::format("{:.1f} %", 100 * *overall.ratio_to_optimum) : "–");
+  }
+  const auto missing = [&](const auto& is_there) {
+    return std::any_of(comparison.rows.begin(), comparison.rows.end(),
+                       [&](const ComparisonRow& row) { return !is_there(row); });
+  };
+  if (missing([](const ComparisonRow& row) { return row.optimum.has_value(); })) {
+    text += fmt::format("\noptimum –: not computed for maps of more than {} valid nodes or {} states\n",
+                        kOptimumMaxNodes, kExactMaxStates);
+  }
+  if (missing([](const ComparisonRow& row) { return row.coverage.has_value(); })) {
+    text += "\nmean –: the policy's search is out of reach on that map\n";
   }
   return text;
 }

@@ -6,16 +6,26 @@
 
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/policy.h"
+#include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
 
 struct RolloutResult {
   std::vector<NodeId> walk;  // the start first
   double coverage;           // of the valid nodes, a fraction
+  double prize;
 };
 
-// One episode per start, walked side by side until each is done or its policy stops.
+// How many episodes to walk side by side: as many as a network takes at once with profit, and fewer where their visit
+// counts would fill the memory.
+int block_size(const World& world);
+
+// One episode per start, side by side, each until it is done or the policy stops.
 std::vector<RolloutResult> roll_out(const World& world, std::span<const NodeId> starts, const EpisodeOptions& options,
                                     Policy& policy);
+
+// Lets a policy that chooses step by step walk one episode, and takes that for its plan, up to the last first visit
+// where it may end anywhere. Once the deadline passes, goes straight to where it must end.
+Plan plan_by_steps(const World& world, const Task& task, Policy& policy, Deadline deadline, const Report& report);
 
 }  // namespace graphdrl

@@ -63,6 +63,27 @@ Graph Graph::grid(int rows, int cols) {
   return graph;
 }
 
+Graph Graph::grid(int rows, int cols, const std::vector<bool>& blocked) {
+  Graph graph;
+  graph.offsets_.reserve(blocked.size() + 1);
+  for (NodeId node = 0; node < rows * cols; ++node) {
+    for (const Direction direction : kAllDirections) {
+      const NodeId next = blocked[node] ? kNoNode : grid_neighbour(rows, cols, node, direction);
+      if (next != kNoNode && !blocked[next]) graph.neighbours_.push_back(next);
+    }
+    graph.close_node();
+  }
+  return graph;
+}
+
+int Graph::index_of(NodeId node, NodeId next) const {
+  const auto all = neighbours(node);
+  // Lists longer than a grid's are in ascending order.
+  const auto place = all.size() > kAllDirections.size() ? std::lower_bound(all.begin(), all.end(), next)
+                                                        : std::find(all.begin(), all.end(), next);
+  return place == all.end() || *place != next ? -1 : static_cast<int>(place - all.begin());
+}
+
 Graph Graph::without(const std::vector<bool>& dropped) const {
   Graph graph;
   graph.kind_ = kind_;
@@ -79,21 +100,10 @@ Graph Graph::without(const std::vector<bool>& dropped) const {
   return graph;
 }
 
-Graph Graph::induced(std::span<const NodeId> nodes, std::vector<NodeId>& number) const {
-  for (std::size_t i = 0; i < nodes.size(); ++i) number[nodes[i]] = static_cast<NodeId>(i);
+Graph Graph::from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> neighbours) {
   Graph graph;
-  graph.kind_ = kind_;
-  graph.offsets_.reserve(nodes.size() + 1);
-  for (const NodeId node : nodes) {
-    for (std::int64_t i = offsets_[node]; i < offsets_[node + 1]; ++i) {
-      if (number[neighbours_[i]] == kNoNode) continue;
-      graph.neighbours_.push_back(number[neighbours_[i]]);
-      if (weighted()) graph.costs_.push_back(costs_[i]);
-    }
-    graph.close_node();
-  }
-  for (const NodeId node : nodes) number[node] = kNoNode;
-  graph.forget_unit_costs();
+  graph.offsets_ = std::move(offsets);
+  graph.neighbours_ = std::move(neighbours);
   return graph;
 }
 
@@ -109,6 +119,23 @@ double Graph::mean_cost() const {
   double sum = 0;
   for (const double cost : costs_) sum += cost;
   return sum / static_cast<double>(costs_.size());
+}
+
+double Graph::min_cost() const {
+  return costs_.empty() ? 1 : *std::min_element(costs_.begin(), costs_.end());
+}
+
+double Graph::max_cost() const {
+  return costs_.empty() ? 1 : *std::max_element(costs_.begin(), costs_.end());
+}
+
+bool Graph::integer_costs() const {
+  double sum = 0;
+  for (const double cost : costs_) {
+    if (cost != std::floor(cost)) return false;
+    sum += cost;
+  }
+  return sum < 0x1p53;
 }
 
 std::vector<Edge> Graph::edges() const {

@@ -34,13 +34,15 @@ class Graph {
   // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down; every edge costs 1.
   // REQUIRES: rows * cols fits a NodeId.
   static Graph grid(int rows, int cols);
+  // The same without the edges of blocked cells. REQUIRES: blocked has a value per cell.
+  static Graph grid(int rows, int cols, const std::vector<bool>& blocked);
 
   // The same nodes, without the edges that touch a dropped one. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;
 
-  // The given nodes, numbered in the order given, and the edges among them. REQUIRES: none is given twice. number:
-  // memory for the numbering, [N], kNoNode everywhere before and after.
-  Graph induced(std::span<const NodeId> nodes, std::vector<NodeId>& number) const;
+  // Undirected, every edge of cost 1. offsets: [N + 1], where each node's neighbours begin, and the end. REQUIRES: each
+  // edge stands in both lists, once.
+  static Graph from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> neighbours);
 
   // The same graph with every edge turned round; an undirected graph is its own.
   Graph reversed() const;
@@ -59,7 +61,14 @@ class Graph {
   // What it costs to go to the neighbour of this place in neighbours().
   double cost(NodeId node, int index) const { return costs_.empty() ? 1.0 : costs_[offsets_[node] + index]; }
 
+  // The place of `next` in neighbours(node), or -1. Cost: O(log degree), or O(4) on a grid.
+  int index_of(NodeId node, NodeId next) const;
+
   double mean_cost() const;  // of the edges; 1 where there are none
+  double min_cost() const;   // likewise
+  double max_cost() const;
+  // Whether every cost is a whole number, and sums of them are exact: together they stay below 2^53.
+  bool integer_costs() const;
 
   // Every edge, an undirected one from its lower node.
   std::vector<Edge> edges() const;

@@ -2,6 +2,16 @@
 
 namespace graphdrl {
 
+std::vector<double> costs_to(const Graph& into, NodeId goal) {
+  std::vector<double> costs(into.node_count(), kNoLimit);
+  costs[goal] = 0;
+  NearestFirst().run(into, goal, kNoLimit, [&](NodeId node, double cost) {
+    costs[node] = cost;
+    return NearestFirst::Next::kThrough;
+  });
+  return costs;
+}
+
 int count_components(const Graph& graph, const std::vector<bool>& blocked) {
   const Graph back = graph.reversed();
   std::vector<bool> seen = blocked;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -12,28 +11,41 @@
 
 namespace graphdrl {
 
+inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
 // The ways from one node outwards, nearest first: breadth first where every edge costs 1, else by Dijkstra's algorithm.
-// Among equally near nodes the one met first comes first. Keeps its memory from one search to the next, and clears only
-// what the last one touched.
+// Among equally near nodes the one met first comes first. Scratch memory of one thread: it serves one search after the
+// other, of any graphs. A search costs what it touches, not the size of the graph, but for growing to it once.
 class NearestFirst {
  public:
-  explicit NearestFirst(const Graph& graph) : graph_(&graph), seen_(graph.node_count()), parent_(graph.node_count()) {}
-
   // Calls visit(node, cost) for every node that can be had for at most max_cost, but `from`, nearest first; goes on
   // from it where visit answers kThrough, stays out of it for good where kPast, ends everything at kEnd.
   enum class Next { kThrough, kPast, kEnd };
   template <typename Visit>
-  void run(NodeId from, double max_cost, const Visit& visit);
-
-  // The way to a node met in the last run: every node after its start, the node last.
-  std::vector<NodeId> path_to(NodeId node) const {
-    std::vector<NodeId> path;
-    for (NodeId step = node; parent_[step] != step; step = parent_[step]) path.push_back(step);
-    std::reverse(path.begin(), path.end());
-    return path;
+  void run(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
+    begin(graph.node_count());
+    if (graph.weighted()) {
+      run_dijkstra(graph, from, max_cost, visit);
+    } else {
+      run_breadth_first(graph, from, max_cost, visit);
+    }
   }
 
+  // Appends the way to a node met in the last run: every node after its start, the node last.
+  void append_path_to(NodeId node, std::vector<NodeId>& walk) const {
+    const auto first = std::ssize(walk);
+    for (NodeId step = node; marks_[step].parent != step; step = marks_[step].parent) walk.push_back(step);
+    std::reverse(walk.begin() + first, walk.end());
+  }
+
+  // The node before one that was met in the last run; the start is its own.
+  NodeId parent(NodeId node) const { return marks_[node].parent; }
+
  private:
+  struct Mark {
+    std::uint32_t run = 0;  // the run that met the node last
+    NodeId parent = kNoNode;
+  };
   struct Reached {
     double cost;
     std::int64_t order;
@@ -42,76 +54,85 @@ class NearestFirst {
     bool operator>(const Reached& other) const { return cost != other.cost ? cost > other.cost : order > other.order; }
   };
 
-  const Graph* graph_;
-  std::vector<std::uint32_t> seen_;  // [N], the run that met it last
-  std::vector<NodeId> parent_;       // [N]
+  void begin(NodeId node_count) {
+    if (marks_.size() < static_cast<std::size_t>(node_count)) marks_.resize(node_count);
+    if (++run_ == 0) {
+      std::fill(marks_.begin(), marks_.end(), Mark());
+      run_ = 1;
+    }
+  }
+  bool met(NodeId node) const { return marks_[node].run == run_; }
+
+  template <typename Visit>
+  void run_breadth_first(const Graph& graph, NodeId from, double max_cost, const Visit& visit);
+  template <typename Visit>
+  void run_dijkstra(const Graph& graph, NodeId from, double max_cost, const Visit& visit);
+
+  std::vector<Mark> marks_;  // [N]
   std::uint32_t run_ = 0;
-  std::vector<Reached> queue_;  // breadth first: in order; Dijkstra: a heap
+  std::vector<NodeId> queue_;  // [N], breadth first: in order
+  std::vector<Reached> heap_;  // Dijkstra
 };
 
 template <typename Visit>
-void NearestFirst::run(NodeId from, double max_cost, const Visit& visit) {
-  if (++run_ == 0) {
-    std::fill(seen_.begin(), seen_.end(), 0);
-    run_ = 1;
-  }
-  queue_.assign(1, {0, 0, from, from});
-  std::int64_t met = 0;
-  const bool heap = graph_->weighted();
-  if (!heap) {
-    seen_[from] = run_;
-    parent_[from] = from;
-  }
-  for (std::size_t head = 0; head < queue_.size();) {
-    Reached here = queue_[head];
-    if (heap) {
-      here = queue_.front();
-      std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
-      queue_.pop_back();
-      if (seen_[here.node] == run_) continue;
-      seen_[here.node] = run_;
-      parent_[here.node] = here.parent;
-    } else {
-      ++head;
-    }
-    if (here.node != from) {
-      const Next next = visit(here.node, here.cost);
-      if (next == Next::kEnd) return;
-      if (next == Next::kPast) continue;
-    }
-    const auto neighbours = graph_->neighbours(here.node);
-    for (int i = 0; i < std::ssize(neighbours); ++i) {
-      const NodeId next = neighbours[i];
-      if (seen_[next] == run_) continue;
-      const double cost = here.cost + graph_->cost(here.node, i);
-      if (cost > max_cost) continue;
-      queue_.push_back({cost, ++met, next, here.node});
-      if (heap) {
-        std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
-      } else {
-        seen_[next] = run_;
-        parent_[next] = here.node;
+void NearestFirst::run_breadth_first(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
+  if (queue_.size() < marks_.size()) queue_.resize(marks_.size());
+  NodeId* const queue = queue_.data();
+  Mark* const marks = marks_.data();
+  const std::uint32_t run = run_;
+  queue[0] = from;
+  marks[from] = {run, from};
+  std::size_t head = 0;
+  std::size_t size = 1;
+  for (double cost = 0; head < size; cost += 1) {
+    // Nodes of one distance stand together: visit them all, meeting those of the next.
+    const bool last = cost + 1 > max_cost;
+    for (const std::size_t end = size; head < end; ++head) {
+      const NodeId here = queue[head];
+      if (here != from) {
+        const Next next = visit(here, cost);
+        if (next == Next::kEnd) return;
+        if (next == Next::kPast) continue;
+      }
+      if (last) continue;
+      for (const NodeId next : graph.neighbours(here)) {
+        if (marks[next].run == run) continue;
+        marks[next] = {run, here};
+        queue[size++] = next;
       }
     }
   }
 }
 
-// The way to the nearest node that `is_goal` accepts, through nodes that `may_enter` accepts: every node after `from`,
-// the goal last. Empty where there is none. Among equally near goals the one met first wins. Cost: O(nodes + edges),
-// times a logarithm where edges have costs.
-template <typename IsGoal, typename MayEnter>
-std::vector<NodeId> path_to_nearest(const Graph& graph, NodeId from, const IsGoal& is_goal, const MayEnter& may_enter) {
-  using Next = NearestFirst::Next;
-  NearestFirst search(graph);
-  NodeId goal = kNoNode;
-  search.run(from, std::numeric_limits<double>::infinity(), [&](NodeId node, double) {
-    if (!may_enter(node)) return Next::kPast;
-    if (!is_goal(node)) return Next::kThrough;
-    goal = node;
-    return Next::kEnd;
-  });
-  return goal == kNoNode ? std::vector<NodeId>() : search.path_to(goal);
+template <typename Visit>
+void NearestFirst::run_dijkstra(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
+  heap_.assign(1, {0, 0, from, from});
+  std::int64_t order = 0;
+  while (!heap_.empty()) {
+    const Reached here = heap_.front();
+    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
+    heap_.pop_back();
+    if (met(here.node)) continue;
+    marks_[here.node] = {run_, here.parent};
+    if (here.node != from) {
+      const Next next = visit(here.node, here.cost);
+      if (next == Next::kEnd) return;
+      if (next == Next::kPast) continue;
+    }
+    const auto neighbours = graph.neighbours(here.node);
+    for (int i = 0; i < std::ssize(neighbours); ++i) {
+      if (met(neighbours[i])) continue;
+      const double cost = here.cost + graph.cost(here.node, i);
+      if (cost > max_cost) continue;
+      heap_.push_back({cost, ++order, neighbours[i], here.node});
+      std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+    }
+  }
 }
+
+// What it costs to get from each node to `goal`, by the cheapest way; kNoLimit where there is none. into: the graph
+// turned round. Cost: O(nodes + edges), times a logarithm where edges have costs.
+std::vector<double> costs_to(const Graph& into, NodeId goal);
 
 // How many connected components the nodes that are not blocked fall into, whichever way edges lead. REQUIRES: blocked
 // has a value per node.

@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 namespace graphdrl {
 namespace {
 
-constexpr double kFar = 32;  // mean edges; what is farther looks as far
-constexpr int kMany = 64;    // nodes; more look as many
-constexpr std::size_t kLeastVisits = 3;
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-bool has(const std::uint64_t* set, NodeId node) {
-  return (set[node / 64] >> (node % 64) & 1) != 0;
-}
+constexpr double kFar = 32;        // mean edges; what is farther looks as far
+constexpr int kMany = 64;          // nodes; more look as many
+constexpr double kDear = 4;        // mean edges; a node of dearer edges looks as dear
+constexpr double kAmple = 3;       // mean edges an unvisited node; a larger budget looks as large
+constexpr double kMostSlack = 16;  // mean edges
 
 float near_scale(double cost) {
   return static_cast<float>(std::min(cost, kFar) / 8);
@@ -33,8 +28,8 @@ float log_scale(int count) {
 // The share of a budget that work takes, seen from both sides of "just enough".
 struct BudgetView {
   BudgetView(double budget, double work)
-      : per_work(static_cast<float>(std::min(budget / std::max(work, 1.0), 3.0))),
-        slack(static_cast<float>(std::clamp(budget - work, -16.0, 16.0) / 8)) {}
+      : per_work(static_cast<float>(std::min(budget / std::max(work, 1.0), kAmple))),
+        slack(static_cast<float>(std::clamp(budget - work, -kMostSlack, kMostSlack) / 8)) {}
   float per_work;
   float slack;
 };
@@ -46,246 +41,335 @@ void ExplorerBatch::clear() {
   for (auto* values : {&node_x, &visit_x}) values->clear();
   for (auto* values : {&current, &target, &state}) values->clear();
   for (auto* values : {&ceiling, &unseen, &budget_per_work}) values->clear();
-  parts.clear();
+  scopes.clear();
 }
 
-std::vector<std::uint64_t> bits_of(const std::vector<bool>& visited) {
-  std::vector<std::uint64_t> bits((visited.size() + 63) / 64);
-  for (std::size_t node = 0; node < visited.size(); ++node)
-    bits[node / 64] |= std::uint64_t{visited[node]} << (node % 64);
-  return bits;
-}
-
-double leftover_penalty(int unvisited_neighbours) {
-  return unvisited_neighbours == 0 ? 4.0 : unvisited_neighbours == 1 ? 2.0 : 0.0;
-}
-
-double change_of_penalties(const Graph& open, const Graph& into, const std::uint64_t* visited, NodeId node) {
-  const auto unvisited_neighbours = [&](NodeId of) {
-    int count = 0;
-    for (const NodeId next : open.neighbours(of)) count += !has(visited, next);
-    return count;
-  };
-  double change = -leftover_penalty(unvisited_neighbours(node));
-  for (const NodeId other : into.neighbours(node)) {
-    if (has(visited, other)) continue;
-    const int neighbours = unvisited_neighbours(other);
-    change += leftover_penalty(neighbours - 1) - leftover_penalty(neighbours);
+// Breadth first, whichever way edges lead.
+void ExplorerEncoder::gather_horizon(const View& view, const ExplorationState& state) {
+  const Graph& graph = view.both_ways();
+  if (place_.size() < static_cast<std::size_t>(graph.node_count())) place_.resize(graph.node_count());
+  if (++call_ == 0) {
+    std::fill(place_.begin(), place_.end(), Place());
+    call_ = 1;
   }
-  return change;
-}
-
-ExplorerEncoder::ExplorerEncoder(const World& world)
-    : world_(&world),
-      into_(world.open().reversed()),
-      row_of_(world.open().node_count(), -1),
-      unit_(world.open().mean_cost()),
-      nearest_(world.open()),
-      from_visit_(world.open()) {
-  const Graph& open = world.open();
-  const std::span<const NodeId> nodes = world.valid_nodes();
-  for (std::size_t row = 0; row < nodes.size(); ++row) row_of_[nodes[row]] = static_cast<int>(row);
-  std::vector<Edge> edges = open.edges();
-  for (Edge& edge : edges) edge = {row_of_[edge.a], row_of_[edge.b], 1};
-  graph_ = Graph::from_edges(world.valid_count(), edges);
-  for (const NodeId node : nodes) {
-    double cost = 0;
-    for (int i = 0; i < open.degree(node); ++i) cost += open.cost(node, i);
-    const int degree = graph_.degree(row_of_[node]);
-    fixed_.push_back(log_scale(degree));
-    fixed_.push_back(static_cast<float>(std::min(cost / unit_ / std::max(open.degree(node), 1), 4.0) - 1));
-    const int both_ways = open.degree(node) + into_.degree(node) - degree;
-    fixed_.push_back(degree == 0 ? 0.0f : 1 - static_cast<float>(both_ways) / static_cast<float>(degree));
+  nodes_.assign(1, state.position);
+  place_[state.position] = {call_, 0};
+  steps_to_horizon_ = 0;
+  std::size_t next_ring = 1;  // where nodes one step farther begin
+  for (std::size_t head = 0; head < nodes_.size() && nodes_.size() < kExplorerHorizon; ++head) {
+    if (head == next_ring) {
+      next_ring = nodes_.size();
+      ++steps_to_horizon_;
+    }
+    for (const NodeId next : graph.neighbours(nodes_[head])) {
+      if (local(next) >= 0) continue;
+      if (nodes_.size() == kExplorerHorizon) break;
+      place_[next] = {call_, static_cast<int>(nodes_.size())};
+      nodes_.push_back(next);
+    }
   }
-  const auto rows = static_cast<std::size_t>(world.valid_count());
-  number_.assign(rows, kNoNode);
-  all_rows_.resize(rows);
-  std::iota(all_rows_.begin(), all_rows_.end(), 0);
-  distance_.resize(rows);
-  visit_cost_.resize(rows);
-  unvisited_neighbours_.resize(rows);
-  work_distance_.resize(rows);
-  part_size_.resize(rows);
-  ties_.resize(rows);
-  hanging_size_.resize(rows);
-  hanging_height_.resize(rows);
-  queue_.reserve(rows);
+  ++steps_to_horizon_;
+
+  const std::size_t count = nodes_.size();
+  unvisited_.resize(count);
+  degree_.resize(count);
+  unvisited_neighbours_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) unvisited_[i] = !state.visited.contains(nodes_[i]);
+  offsets_.assign(1, 0);
+  neighbours_.clear();
+  whole_component_ = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    int unvisited = 0;
+    for (const NodeId next : graph.neighbours(nodes_[i])) {
+      const int index = local(next);
+      if (index >= 0) {
+        neighbours_.push_back(index);
+        unvisited += unvisited_[index];
+      } else {
+        whole_component_ = false;
+        unvisited += !state.visited.contains(next);
+      }
+    }
+    degree_[i] = graph.degree(nodes_[i]);
+    unvisited_neighbours_[i] = unvisited;
+    offsets_.push_back(std::ssize(neighbours_));
+  }
 }
 
-void ExplorerEncoder::measure_distances(const ExplorerState& state) {
-  using Next = NearestFirst::Next;
-  std::fill(distance_.begin(), distance_.end(), kInfinite);
-  std::fill(visit_cost_.begin(), visit_cost_.end(), 0.0);
+// Distances of what a scope may hold, and the work in reach. Work beyond the horizon is taken to be in reach.
+void ExplorerEncoder::measure_distances(const View& view, const ExplorationState& state, int scope) {
+  const Graph& open = view.open();
+  const std::size_t most = 2 * static_cast<std::size_t>(scope);
+  const double farthest = steps_to_horizon_ * open.max_cost();
+  const bool all_in_reach = whole_component_ && !open.directed() && farthest <= state.spendable;
+  const bool beyond_in_reach = !whole_component_ && !open.directed() && farthest <= state.spendable;
+  distance_.assign(nodes_.size(), kNoLimit);
+  distance_[0] = 0;
+  in_reach_.assign(1, 0);
+  int reached = 1;
+  double work = unvisited_[0];
+  bool reached_all = true;
+  search_.run(open, state.position, state.spendable, [&](NodeId node, double cost) {
+    const int index = local(node);
+    if (index < 0 || reached == kExplorerHorizon || ((all_in_reach || beyond_in_reach) && in_reach_.size() == most)) {
+      reached_all = false;
+      return NearestFirst::Next::kEnd;
+    }
+    ++reached;
+    work += unvisited_[index];
+    distance_[index] = cost / unit_;
+    if (in_reach_.size() < most) in_reach_.push_back(index);
+    return NearestFirst::Next::kThrough;
+  });
+  in_reach_is_all_ = reached_all && reached == std::ssize(in_reach_);
+  if (!reached_all && all_in_reach) {
+    work = static_cast<double>(std::count(unvisited_.begin(), unvisited_.end(), 1));
+  } else if (!reached_all) {
+    work = view.valid_count() - state.visited_count;
+  }
+  work_ = work;
+}
+
+// All that a scope may hold, and kLeastVisits at least, unless they are far beyond the horizon's size of visited
+// ground.
+void ExplorerEncoder::find_first_visits(const View& view, const ExplorationState& state) {
+  int possible = 0;  // first visits that may be in scope
+  number_.assign(nodes_.size(), -1);
+  for (const int index : in_reach_) {
+    number_[index] = 0;
+    const auto from = view.into().neighbours(nodes_[index]);
+    possible += unvisited_[index] != 0 &&
+                std::any_of(from.begin(), from.end(), [&](NodeId node) { return state.visited.contains(node); });
+  }
+  visit_cost_.assign(nodes_.size(), 0.0);
   visits_.clear();
-  distance_[row_of_[state.position]] = 0;
-  in_reach_.assign(1, row_of_[state.position]);
-  nearest_.run(state.position, state.spendable, [&](NodeId node, double cost) {
-    distance_[row_of_[node]] = cost / unit_;
-    in_reach_.push_back(row_of_[node]);
-    return Next::kThrough;
-  });
-  nearest_.run(state.position, state.spendable, [&](NodeId node, double cost) {
-    if (has(state.visited, node)) return Next::kThrough;
+  overlooked_ = false;
+  int in_scope = 0;
+  int searched = 0;
+  search_.run(view.open(), state.position, state.spendable, [&](NodeId node, double cost) {
+    const bool enough = (in_scope == possible && std::ssize(visits_) >= kLeastVisits) ||
+                        (searched >= kExplorerHorizon && !visits_.empty());
+    if (enough) {
+      overlooked_ = in_scope < possible || !in_reach_is_all_;
+      return NearestFirst::Next::kEnd;
+    }
+    ++searched;
+    if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
     visits_.push_back({node, cost});
-    visit_cost_[row_of_[node]] = cost / unit_;
-    return Next::kPast;
+    if (const int index = local(node); index >= 0) {
+      visit_cost_[index] = cost / unit_;
+      in_scope += number_[index] == 0;
+      distance_[index] = std::min(distance_[index], cost / unit_);
+    }
+    return NearestFirst::Next::kPast;
   });
 }
 
-void ExplorerEncoder::measure_work(const std::vector<bool>& unvisited) {
-  // How many steps visited nodes are from an unvisited one.
-  const int rows = graph_.node_count();
+void ExplorerEncoder::choose_scope(const View& view, int scope) {
+  const std::size_t wanted = std::min<std::size_t>(visits_.size(), kLeastVisits);
+  std::size_t size = 0;
+  std::size_t visits = 0;
+  while (size < in_reach_.size() && (size < static_cast<std::size_t>(scope) || visits < wanted)) {
+    visits += visit_cost_[in_reach_[size]] > 0;
+    ++size;
+  }
+  seen_.assign(in_reach_.begin(), in_reach_.begin() + static_cast<std::ptrdiff_t>(size));
+  number_.assign(nodes_.size(), -1);
+  for (std::size_t i = 0; i < size; ++i) number_[seen_[i]] = static_cast<int>(i);
+  for (std::size_t i = 0; i < visits_.size() && visits < wanted; ++i) {
+    const int index = local(visits_[i].node);
+    if (index < 0 || number_[index] >= 0) continue;
+    number_[index] = static_cast<int>(seen_.size());
+    seen_.push_back(index);
+    ++visits;
+  }
+  if (std::ssize(seen_) == view.valid_count()) {
+    std::sort(seen_.begin(), seen_.end(), [&](int a, int b) { return nodes_[a] < nodes_[b]; });
+    for (std::size_t i = 0; i < seen_.size(); ++i) number_[seen_[i]] = static_cast<int>(i);
+  }
+  double work_in_scope = 0;
+  for (const int index : seen_) work_in_scope += unvisited_[index];
+  share_ = work_ > 0 ? std::min(work_in_scope / work_, 1.0) : 1;
+  overlooked_ = std::erase_if(visits_,
+                              [&](const FirstVisit& visit) {
+                                const int index = local(visit.node);
+                                return index < 0 || number_[index] < 0;
+                              }) > 0 ||
+                overlooked_;
+}
+
+void ExplorerEncoder::measure_work_distances() {
+  const int count = static_cast<int>(nodes_.size());
+  work_distance_.resize(nodes_.size());
   queue_.clear();
-  for (int row = 0; row < rows; ++row) {
-    work_distance_[row] = unvisited[row] ? 0 : -1;
-    if (unvisited[row]) queue_.push_back(row);
+  for (int i = 0; i < count; ++i) {
+    const bool border = unvisited_[i] == 0 && unvisited_neighbours_[i] > 0;
+    work_distance_[i] = unvisited_[i] != 0 ? 0 : border ? 1 : -1;
+    if (border) queue_.push_back(i);
   }
   for (std::size_t head = 0; head < queue_.size(); ++head) {
-    for (const int next : graph_.neighbours(queue_[head])) {
+    for (const int next : neighbours(queue_[head])) {
       if (work_distance_[next] >= 0) continue;
       work_distance_[next] = work_distance_[queue_[head]] + 1;
       queue_.push_back(next);
     }
   }
-  // Parts: unvisited nodes connected through unvisited ones.
-  std::fill(part_size_.begin(), part_size_.end(), 0);
-  for (int row = 0; row < rows; ++row) {
-    if (!unvisited[row] || part_size_[row] > 0) continue;
-    queue_.assign(1, row);
-    part_size_[row] = 1;
+}
+
+// Unvisited nodes connected through unvisited ones, of those in scope.
+void ExplorerEncoder::measure_parts(int unvisited_in_world) {
+  const int beyond = unvisited_in_world - static_cast<int>(std::count(unvisited_.begin(), unvisited_.end(), 1));
+  part_size_.assign(nodes_.size(), 0);
+  for (const int root : seen_) {
+    if (unvisited_[root] == 0 || part_size_[root] > 0) continue;
+    queue_.assign(1, root);
+    part_size_[root] = 1;
+    bool goes_on = false;  // beyond the horizon
     for (std::size_t head = 0; head < queue_.size(); ++head) {
-      for (const int next : graph_.neighbours(queue_[head])) {
-        if (!unvisited[next] || part_size_[next] > 0) continue;
+      int unvisited = 0;
+      for (const int next : neighbours(queue_[head])) {
+        if (unvisited_[next] == 0) continue;
+        ++unvisited;
+        if (part_size_[next] > 0) continue;
         part_size_[next] = 1;
         queue_.push_back(next);
       }
+      goes_on = goes_on || unvisited < unvisited_neighbours_[queue_[head]];
     }
-    for (const int member : queue_) part_size_[member] = static_cast<int>(queue_.size());
+    const int size = static_cast<int>(queue_.size()) + (goes_on ? beyond : 0);
+    for (const int member : queue_) part_size_[member] = size;
   }
-  // Hanging trees: unvisited nodes that can be left only by the way one came. Leaves are taken off again and again;
-  // visited ground next to a node holds it as one more edge would.
+}
+
+// Unvisited nodes that can be left only by the way one came. Leaves are taken off again and again; visited ground next
+// to a node holds it as one more edge would.
+void ExplorerEncoder::measure_hanging_trees() {
+  const int count = static_cast<int>(nodes_.size());
+  for (auto* values : {&hanging_size_, &hanging_height_}) values->assign(nodes_.size(), 0);
+  hanging_.assign(nodes_.size(), 0);
+  ties_.resize(nodes_.size());
   queue_.clear();
-  for (int row = 0; row < rows; ++row) {
-    hanging_size_[row] = 0;
-    hanging_height_[row] = 0;
-    if (!unvisited[row]) continue;
-    const bool anchored = unvisited_neighbours_[row] < graph_.degree(row);
-    ties_[row] = unvisited_neighbours_[row] + (anchored ? 1 : 0);
-    if (ties_[row] <= 1) queue_.push_back(row);
+  for (int i = 0; i < count; ++i) {
+    if (unvisited_[i] == 0) continue;
+    // Nodes beyond the horizon hold too: their ties are never taken off.
+    const bool anchored = unvisited_neighbours_[i] < degree_[i];
+    ties_[i] = unvisited_neighbours_[i] + (anchored ? 1 : 0);
+    if (ties_[i] <= 1) queue_.push_back(i);
   }
-  hanging_.assign(rows, false);
   for (std::size_t head = 0; head < queue_.size(); ++head) {
-    const int row = queue_[head];
-    hanging_[row] = true;
-    ++hanging_size_[row];
-    ++hanging_height_[row];
-    for (const int next : graph_.neighbours(row)) {
-      if (!unvisited[next] || hanging_[next]) continue;
-      hanging_size_[next] += hanging_size_[row];
-      hanging_height_[next] = std::max(hanging_height_[next], hanging_height_[row]);
+    const int leaf = queue_[head];
+    hanging_[leaf] = 1;
+    ++hanging_size_[leaf];
+    ++hanging_height_[leaf];
+    for (const int next : neighbours(leaf)) {
+      if (unvisited_[next] == 0 || hanging_[next] != 0) continue;
+      hanging_size_[next] += hanging_size_[leaf];
+      hanging_height_[next] = std::max(hanging_height_[next], hanging_height_[leaf]);
       if (--ties_[next] == 1) queue_.push_back(next);
     }
   }
 }
 
-std::span<const FirstVisit> ExplorerEncoder::append(const ExplorerState& state, int scope, ExplorerBatch& batch) {
-  const int rows = graph_.node_count();
-  const std::span<const NodeId> nodes = world_->valid_nodes();
-  unvisited_.resize(rows);
-  for (int row = 0; row < rows; ++row) unvisited_[row] = !has(state.visited, nodes[row]);
-  for (int row = 0; row < rows; ++row) {
-    int count = 0;
-    for (const int next : graph_.neighbours(row)) count += unvisited_[next];
-    unvisited_neighbours_[row] = count;
+// The scope with the edges among its nodes, neighbours by ascending id: sums over them do not depend on directions.
+Graph ExplorerEncoder::scope_graph(const View& view) const {
+  std::vector<std::int64_t> offsets = {0};
+  std::vector<NodeId> lists;
+  std::vector<NodeId> ids;
+  for (const int index : seen_) {
+    const auto all = view.both_ways().neighbours(nodes_[index]);
+    ids.assign(all.begin(), all.end());
+    if (!std::is_sorted(ids.begin(), ids.end())) std::sort(ids.begin(), ids.end());
+    for (const NodeId id : ids) {
+      const int place = local(id);
+      if (place >= 0 && number_[place] >= 0) lists.push_back(number_[place]);
+    }
+    offsets.push_back(std::ssize(lists));
   }
-  measure_distances(state);
-  measure_work(unvisited_);
-  const double budget = state.spendable / unit_;
-  double work = 0;
-  for (const NodeId row : in_reach_) work += unvisited_[row];
+  return Graph::from_lists(std::move(offsets), std::move(lists));
+}
 
-  // What the network looks at.
-  std::size_t size = 0;
-  std::size_t visits = 0;
-  double work_in_scope = 0;
-  while (size < in_reach_.size() &&
-         (size < static_cast<std::size_t>(scope) || visits < std::min(visits_.size(), kLeastVisits))) {
-    visits += visit_cost_[in_reach_[size]] > 0;
-    work_in_scope += unvisited_[in_reach_[size]];
-    ++size;
-  }
-  const bool whole = size == static_cast<std::size_t>(rows);
-  const std::span<const NodeId> seen = whole ? std::span<const NodeId>(all_rows_) : std::span(in_reach_).first(size);
-  if (whole) {
-    batch.graphs.add(graph_);
-  } else {
-    batch.graphs.add(batch.parts.emplace_back(graph_.induced(seen, number_)));
-  }
-  // As if the rest of the world were as much work for as much of the budget.
-  const double share = work > 0 ? work_in_scope / work : 1;
-  const BudgetView view(share * budget, share * work);
-
-  const int first_row = batch.graphs.node_count() - static_cast<int>(size);
-  for (std::size_t i = 0; i < size; ++i) number_[seen[i]] = first_row + static_cast<int>(i);
-  batch.node_x.resize(static_cast<std::size_t>(batch.graphs.node_count()) * kExplorerNodeFeatureCount);
-  float* x = batch.node_x.data() + static_cast<std::ptrdiff_t>(first_row) * kExplorerNodeFeatureCount;
-  const auto out_of_scope = [&](NodeId row) {
-    int count = 0;
-    for (const NodeId next : graph_.neighbours(row)) count += number_[next] == kNoNode;
-    return static_cast<float>(count) / static_cast<float>(std::max(graph_.degree(row), 1));
-  };
-  for (const NodeId row : seen) {
-    const bool open = unvisited_[row];
-    const float* const fixed = fixed_.data() + 3 * static_cast<std::ptrdiff_t>(row);
-    x[0] = open;
-    x[1] = nodes[row] == state.position;
-    x[2] = visit_cost_[row] > 0;
-    x[3] = fixed[0];
-    x[4] = log_scale(unvisited_neighbours_[row]);
-    x[5] = open && unvisited_neighbours_[row] == 0;
-    x[6] = open && unvisited_neighbours_[row] == 1;
-    x[7] = near_scale(distance_[row]);
-    x[8] = near_scale(visit_cost_[row]);
-    x[9] = whole ? 0 : out_of_scope(row);
-    x[10] = near_scale(work_distance_[row] < 0 ? kFar : work_distance_[row]);
-    x[11] = log_scale(part_size_[row]);
-    x[12] = static_cast<float>(std::min(part_size_[row] / std::max(work, 1.0), 1.0));
-    x[13] = fixed[1];
-    x[14] = view.per_work;
-    x[15] = view.slack;
-    x[16] = hanging_[row];
-    x[17] = log_scale(hanging_size_[row]);
-    x[18] = near_scale(hanging_height_[row]);
-    x[19] = fixed[2];
+void ExplorerEncoder::append_nodes(const View& view, const ExplorationState& state, ExplorerBatch& batch) {
+  const Graph& open = view.open();
+  const Graph& into = view.into();
+  const BudgetView budget(share_ * state.spendable / unit_, share_ * work_);
+  batch.graphs.add(batch.scopes.emplace_back(scope_graph(view)));
+  const std::size_t first = batch.node_x.size();
+  batch.node_x.resize(first + seen_.size() * kExplorerNodeFeatureCount);
+  float* x = batch.node_x.data() + first;
+  const Graph& scope = batch.scopes.back();
+  for (std::size_t row = 0; row < seen_.size(); ++row) {
+    const int i = seen_[row];
+    const NodeId node = nodes_[i];
+    const bool is_open = unvisited_[i] != 0;
+    const int degree = degree_[i];
+    double cost = 0;
+    for (int k = 0; k < open.degree(node); ++k) cost += open.cost(node, k);
+    const int both_ways = open.degree(node) + into.degree(node) - degree;
+    x[0] = is_open;
+    x[1] = i == 0;
+    x[2] = visit_cost_[i] > 0;
+    x[3] = log_scale(degree);
+    x[4] = log_scale(unvisited_neighbours_[i]);
+    x[5] = is_open && unvisited_neighbours_[i] == 0;
+    x[6] = is_open && unvisited_neighbours_[i] == 1;
+    x[7] = near_scale(distance_[i]);
+    x[8] = near_scale(visit_cost_[i]);
+    x[9] =
+        static_cast<float>(degree - scope.degree(static_cast<NodeId>(row))) / static_cast<float>(std::max(degree, 1));
+    x[10] = near_scale(work_distance_[i] < 0 ? kFar : work_distance_[i]);
+    x[11] = log_scale(part_size_[i]);
+    x[12] = static_cast<float>(std::min(part_size_[i] / std::max(work_, 1.0), 1.0));
+    x[13] = static_cast<float>(std::min(cost / unit_ / std::max(open.degree(node), 1), kDear) - 1);
+    x[14] = budget.per_work;
+    x[15] = budget.slack;
+    x[16] = hanging_[i];
+    x[17] = log_scale(hanging_size_[i]);
+    x[18] = near_scale(hanging_height_[i]);
+    x[19] = degree == 0 ? 0.0f : 1 - static_cast<float>(both_ways) / static_cast<float>(degree);
     x += kExplorerNodeFeatureCount;
   }
+}
 
-  const int index = batch.graphs.graph_count() - 1;
-  overlooked_ =
-      std::erase_if(visits_, [&](const FirstVisit& visit) { return number_[row_of_[visit.node]] == kNoNode; }) > 0;
+void ExplorerEncoder::append_visits(const View& view, const ExplorationState& state, ExplorerBatch& batch) {
+  const double budget = state.spendable / unit_;
+  const int first_row = batch.graphs.first_node(batch.graphs.graph_count() - 1);
   for (const FirstVisit& visit : visits_) {
-    const int row = row_of_[visit.node];
-    double next_cost = kInfinite;
-    from_visit_.run(visit.node, state.spendable - visit.cost, [&](NodeId node, double cost) {
-      if (has(state.visited, node)) return NearestFirst::Next::kThrough;
+    const int i = local(visit.node);
+    double next_cost = kFar;
+    const double most = std::min(state.spendable - visit.cost, kFar * unit_);
+    search_.run(view.open(), visit.node, most, [&](NodeId node, double cost) {
+      if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
       next_cost = cost / unit_;
       return NearestFirst::Next::kEnd;
     });
-    const BudgetView after(share * (budget - visit_cost_[row]), share * (work - 1));
-    const double change = change_of_penalties(world_->open(), into_, state.visited, visit.node);
+    const BudgetView after(share_ * (budget - visit_cost_[i]), share_ * (work_ - 1));
+    const double change = change_of_penalties(view, state.visited, visit.node);
     batch.visit_x.insert(batch.visit_x.end(),
-                         {near_scale(visit_cost_[row]), static_cast<float>(change / 4),
-                          log_scale(unvisited_neighbours_[row]), near_scale(next_cost), after.per_work, after.slack,
-                          log_scale(static_cast<int>(work)), static_cast<float>(hanging_[row]),
-                          log_scale(hanging_size_[row]), near_scale(hanging_height_[row]), static_cast<float>(share)});
-    batch.target.push_back(number_[row]);
-    batch.state.push_back(index);
+                         {near_scale(visit_cost_[i]), static_cast<float>(change / 4),
+                          log_scale(unvisited_neighbours_[i]), near_scale(next_cost), after.per_work, after.slack,
+                          log_scale(static_cast<int>(std::min(work_, 1e9))), static_cast<float>(hanging_[i]),
+                          log_scale(hanging_size_[i]), near_scale(hanging_height_[i]), static_cast<float>(share_)});
+    batch.target.push_back(first_row + number_[i]);
+    batch.state.push_back(batch.graphs.graph_count() - 1);
   }
-  batch.current.push_back(number_[row_of_[state.position]]);
-  batch.ceiling.push_back(std::min(work, budget));
-  batch.unseen.push_back(1 - share);
-  batch.budget_per_work.push_back(budget / std::max(work, 1.0));
-  for (const NodeId row : seen) number_[row] = kNoNode;
+  batch.current.push_back(first_row + number_[0]);
+  batch.ceiling.push_back(std::min(work_, budget));
+  batch.unseen.push_back(1 - share_);
+  batch.budget_per_work.push_back(budget / std::max(work_, 1.0));
+}
+
+std::span<const FirstVisit> ExplorerEncoder::append(const View& view, const ExplorationState& state, int scope,
+                                                    ExplorerBatch& batch) {
+  unit_ = view.open().mean_cost();
+  gather_horizon(view, state);
+  measure_distances(view, state, scope);
+  find_first_visits(view, state);
+  choose_scope(view, scope);
+  measure_work_distances();
+  measure_parts(view.valid_count() - state.visited_count);
+  measure_hanging_trees();
+  append_nodes(view, state, batch);
+  append_visits(view, state, batch);
   return visits_;
 }
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "graphdrl/env/world.h"
+#include "graphdrl/env/exploration.h"
 #include "graphdrl/graph/search.h"
 #include "graphdrl/nn/graph_batch.h"
 
@@ -56,22 +56,6 @@ inline constexpr std::array<std::string_view, 11> kExplorerVisitFeatures = {
 };
 inline constexpr int kExplorerVisitFeatureCount = static_cast<int>(kExplorerVisitFeatures.size());
 
-// A move: a walk to an unvisited node next to visited ground, by the cheapest way through visited ground.
-struct FirstVisit {
-  NodeId node;
-  double cost;  // in units of cost
-};
-
-// The state of an exploration, as planners keep it.
-struct ExplorerState {
-  const std::uint64_t* visited;  // a bit per node
-  NodeId position;
-  double spendable;
-};
-
-// A bit per node.
-std::vector<std::uint64_t> bits_of(const std::vector<bool>& visited);
-
 // B states with C first visits together.
 struct ExplorerBatch {
   GraphBatch graphs;
@@ -83,69 +67,88 @@ struct ExplorerBatch {
   std::vector<double> ceiling;  // [B], about what a walk can still visit: nodes in reach, or what the budget pays for
   std::vector<double> unseen;   // [B], the share of the unvisited nodes in reach that is out of scope
   std::vector<double> budget_per_work;  // [B], mean edges left to spend for each unvisited node in reach
-  std::deque<Graph> parts;              // of worlds, which `graphs` points to
+  std::deque<Graph> scopes;             // what the network looks at of each world; `graphs` points to them
 
   void clear();
   int visit_count() const { return static_cast<int>(target.size()); }  // C
 };
 
 // How many nodes around the current one the network looks at: a large world looks like those it was trained on, and its
-// share of a move's cost does not grow with the world.
+// share of a move's cost does not grow with the world. Where fewer than kLeastVisits first visits are among them, it
+// looks at up to twice as many; a first visit farther off is one more node.
 inline constexpr int kExplorerScope = 96;
+inline constexpr int kLeastVisits = 3;
 
-// Builds the features of one world's states. Keeps working memory; not thread safe. The world must outlive it, and it
-// every batch that it appended to.
+// How many nodes around the current one the features are measured on, whichever way edges lead. What lies beyond counts
+// as one whole: unvisited nodes there as one part, joined to every part that touches them. Chosen on the validation
+// split (docs/explorer.md).
+inline constexpr int kExplorerHorizon = 2048;
+
+// Builds the features of states, of any world. Scratch memory of one thread: a state costs what lies within the
+// horizon, not the size of the world, but for growing to it once.
 class ExplorerEncoder {
  public:
-  explicit ExplorerEncoder(const World& world);
+  // Appends a state: of the valid nodes in reach the nearest `scope`, and more as above. Gives the first visits among
+  // them, nearest first, until the next call. The batch may outlive everything else.
+  std::span<const FirstVisit> append(const View& view, const ExplorationState& state, int scope, ExplorerBatch& batch);
 
-  const World& world() const { return *world_; }
-
-  // Appends a state: of the valid nodes in reach the nearest `scope`, and more until three first visits are among them.
-  // Gives the first visits, nearest first, until the next call. Cost: O(nodes + edges), and a search for each visit
-  // that leads to no unvisited neighbour.
-  std::span<const FirstVisit> append(const ExplorerState& state, int scope, ExplorerBatch& batch);
-
-  // Whether there were first visits out of scope at the last call.
+  // Whether there may have been first visits out of scope at the last call.
   bool overlooked() const { return overlooked_; }
 
  private:
-  void measure_distances(const ExplorerState& state);
-  void measure_work(const std::vector<bool>& unvisited);
+  // Nodes within the horizon have local indices, by distance in steps from the current node, which is 0.
+  struct Place {
+    std::uint32_t call = 0;  // the call that set it
+    int index = -1;
+  };
+  int local(NodeId node) const { return place_[node].call == call_ ? place_[node].index : -1; }
+  std::span<const int> neighbours(int index) const {
+    return {neighbours_.data() + offsets_[index], neighbours_.data() + offsets_[index + 1]};
+  }
 
-  const World* world_;
-  Graph into_;               // the open graph turned round
-  Graph graph_;              // the valid nodes, renumbered in ascending order (rows), with edges in both directions
-  std::vector<int> row_of_;  // by node; -1 for blocked ones
-  double unit_;              // mean cost of an edge
-  NearestFirst nearest_;
-  NearestFirst from_visit_;
-  std::vector<float> fixed_;  // [valid nodes, 3]: degree, edge cost, share of edges that lead one way
-  std::vector<FirstVisit> visits_;
-  bool overlooked_ = false;
-  std::vector<NodeId> in_reach_;  // rows, nearest first, the position's first
-  std::vector<NodeId> number_;    // for Graph::induced
-  std::vector<NodeId> all_rows_;  // 0, 1, …
-  // By row:
-  std::vector<bool> unvisited_;
-  std::vector<double> distance_;    // from the position, in mean edges
-  std::vector<double> visit_cost_;  // of a first visit, likewise; else 0
-  std::vector<int> unvisited_neighbours_;
-  std::vector<int> work_distance_;
+  void gather_horizon(const View& view, const ExplorationState& state);
+  void measure_distances(const View& view, const ExplorationState& state, int scope);
+  void find_first_visits(const View& view, const ExplorationState& state);
+  void choose_scope(const View& view, int scope);
+  void measure_work_distances();
+  void measure_parts(int unvisited_in_world);
+  void measure_hanging_trees();
+  Graph scope_graph(const View& view) const;
+  void append_nodes(const View& view, const ExplorationState& state, ExplorerBatch& batch);
+  void append_visits(const View& view, const ExplorationState& state, ExplorerBatch& batch);
+
+  NearestFirst search_;
+  double unit_ = 1;           // mean cost of an edge
+  std::vector<Place> place_;  // [nodes of the largest world]
+  std::uint32_t call_ = 0;
+
+  // By local index:
+  std::vector<NodeId> nodes_;
+  std::vector<std::int64_t> offsets_;
+  std::vector<int> neighbours_;  // local indices, whichever way edges lead; those beyond the horizon are left out
+  std::vector<std::uint8_t> unvisited_;
+  std::vector<int> degree_;                // whichever way edges lead
+  std::vector<int> unvisited_neighbours_;  // beyond the horizon too
+  std::vector<double> distance_;           // from the current node, in mean edges
+  std::vector<double> visit_cost_;         // of a first visit, likewise; 0 of other nodes
+  std::vector<int> work_distance_;         // steps from a visited node to an unvisited one; -1 where there is none
   std::vector<int> part_size_;
-  std::vector<bool> hanging_;
+  std::vector<std::uint8_t> hanging_;
   std::vector<int> hanging_size_;
   std::vector<int> hanging_height_;
   std::vector<int> ties_;
+  std::vector<int> number_;  // row in the scope; -1 out of it
+
+  bool whole_component_ = false;  // nothing lies beyond the horizon
+  int steps_to_horizon_ = 0;
+  double work_ = 0;               // unvisited nodes in reach
+  std::vector<int> in_reach_;     // nearest first, the current node first; as many as a scope may have
+  bool in_reach_is_all_ = false;  // nothing else is in reach
+  std::vector<FirstVisit> visits_;
+  bool overlooked_ = false;
+  double share_ = 1;       // of the work, in scope
+  std::vector<int> seen_;  // the scope: local indices, in the order of rows
   std::vector<int> queue_;
 };
-
-// What an unvisited node is likely to cost on top of one step, in mean edges, by its unvisited neighbours: one without
-// any must be left again by the way one came; one with a single neighbour is a dead end. Of fourteen pairs of penalties
-// tried, the one by which a beam visits most on random 11×11 mazes at 1.0x.
-double leftover_penalty(int unvisited_neighbours);
-
-// By how much the sum of penalties over all unvisited nodes changes when `node` is visited. into: open turned round.
-double change_of_penalties(const Graph& open, const Graph& into, const std::uint64_t* visited, NodeId node);
 
 }  // namespace graphdrl

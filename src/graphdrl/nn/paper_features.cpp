@@ -13,31 +13,31 @@ float& at(std::span<float> matrix, NodeId node, PaperFeature feature) {
 
 }  // namespace
 
-PaperFeatureEncoder::PaperFeatureEncoder(const World& world) : world_(&world) {
-  if (!world.is_grid()) {
-    throw Error({.what = "the paper's features need a grid map", .where = world.name()});
+PaperFeatureEncoder::PaperFeatureEncoder(const View& view) : view_(view) {
+  if (!view.is_grid()) {
+    throw Error({.what = "the paper's features need a grid map", .where = view.name()});
   }
-  const GridMap& map = *world.map();
-  untouched_.resize(static_cast<std::size_t>(world.graph().node_count()) * kPaperFeatureCount);
-  for (NodeId node = 0; node < world.graph().node_count(); ++node) {
+  const GridMap& map = view.map();
+  untouched_.resize(static_cast<std::size_t>(view.node_count()) * kPaperFeatureCount);
+  for (NodeId node = 0; node < view.node_count(); ++node) {
     const Cell cell = map.cell(node);
     const bool wall = cell.row == 0 || cell.col == 0 || cell.row == map.rows - 1 || cell.col == map.cols - 1;
     at(untouched_, node, PaperFeature::kX) = static_cast<float>(cell.row);
     at(untouched_, node, PaperFeature::kY) = static_cast<float>(cell.col);
-    at(untouched_, node, PaperFeature::kObstacle) = world.is_blocked(node) ? 1.0f : 0.0f;
+    at(untouched_, node, PaperFeature::kObstacle) = view.is_blocked(node) ? 1.0f : 0.0f;
     at(untouched_, node, PaperFeature::kWall) = wall ? 1.0f : 0.0f;
-    at(untouched_, node, PaperFeature::kUnvisitedNeighbours) = static_cast<float>(world.graph().degree(node));
+    at(untouched_, node, PaperFeature::kUnvisitedNeighbours) = static_cast<float>(view.graph().degree(node));
   }
 }
 
 void PaperFeatureEncoder::mark_visited(NodeId node, std::span<float> out) const {
-  for (const NodeId next : world_->graph().neighbours(node)) at(out, next, PaperFeature::kUnvisitedNeighbours) -= 1.0f;
+  for (const NodeId next : view_.graph().neighbours(node)) at(out, next, PaperFeature::kUnvisitedNeighbours) -= 1.0f;
 }
 
 template <typename Count>
 void PaperFeatureEncoder::encode(NodeId position, std::span<const Count> visits, std::span<float> out) const {
   std::copy(untouched_.begin(), untouched_.end(), out.begin());
-  for (const NodeId node : world_->valid_nodes()) {
+  for (const NodeId node : view_.valid_nodes()) {
     if (visits[node] == 0) continue;
     at(out, node, PaperFeature::kVisits) = static_cast<float>(visits[node]);
     mark_visited(node, out);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "graphdrl/env/episode.h"
-#include "graphdrl/env/world.h"
+#include "graphdrl/env/view.h"
 
 namespace graphdrl {
 
@@ -18,13 +18,13 @@ inline constexpr std::array<std::string_view, kPaperFeatureCount> kPaperFeatureN
     "x", "y", "obstacle", "visits", "wall", "unvisited_neighbours", "current"};
 
 // Builds the features of one world's nodes, unscaled. As in the author's code, x is the row and y the column, and an
-// obstacle counts as an unvisited neighbour for ever. Immutable; the world must outlive it.
+// obstacle counts as an unvisited neighbour for ever. Immutable.
 class PaperFeatureEncoder {
  public:
   // Throws Error where the world is no grid: x, y and wall need one.
-  explicit PaperFeatureEncoder(const World& world);
+  explicit PaperFeatureEncoder(const View& view);
 
-  const World& world() const { return *world_; }
+  const View& view() const { return view_; }
 
   // out: [N, F]. From scratch: O(N + edges of visited nodes).
   template <typename Count>
@@ -37,7 +37,7 @@ class PaperFeatureEncoder {
  private:
   void mark_visited(NodeId node, std::span<float> out) const;
 
-  const World* world_;
+  View view_;
   std::vector<float> untouched_;  // [N, F], nothing visited, nobody there
 };
 

@@ -3,82 +3,205 @@
 #include <algorithm>
 #include <vector>
 
-#include "graphdrl/graph/search.h"
-
 namespace graphdrl {
 namespace {
 
-// The action that leads to `next`; kStop where it cannot be paid for.
-int step_to(const Observation& observation, NodeId next) {
-  const int action = observation.action_to(next);
-  return observation.cost(action) <= observation.spendable ? action : kStop;
+constexpr int kVisitsPerTick = 256;
+
+// Draws one of the actions that are allowed; kStop where none is.
+template <typename Allowed>
+int draw_action(const Observation& observation, const Allowed& allowed, Rng& rng) {
+  std::vector<int> actions;
+  for (int action = 0; action < observation.action_count(); ++action) {
+    if (allowed(action)) actions.push_back(action);
+  }
+  return actions.empty() ? kStop : actions[rng.below(static_cast<std::uint32_t>(actions.size()))];
 }
+
+// A depth-first walk under way. The trail leads from the start to where it stands.
+class DepthFirstWalk {
+ public:
+  DepthFirstWalk(const Task& task, NearestFirst& search)
+      : open_(task.view.open()),
+        search_(search),
+        spendable_(task.limit()),
+        visited_(task.visited_before()),
+        next_(open_.node_count()),
+        walk_{task.start},
+        trail_{task.start} {}
+
+  // Goes on by one first visit. False where there is none left, or none can be paid for.
+  bool advance() { return open_.directed() ? advance_one_way() : advance_both_ways(); }
+
+  int visits() const { return visits_; }
+
+  std::vector<NodeId> take_walk() && {
+    walk_.resize(last_visit_);
+    return std::move(walk_);
+  }
+
+ private:
+  // The place of a node's first unvisited neighbour, -1 where there is none. What is visited stays visited, so each
+  // list is gone through once.
+  int first_unvisited(NodeId node) {
+    const auto neighbours = open_.neighbours(node);
+    int& place = next_[node];
+    while (place < std::ssize(neighbours) && visited_.contains(neighbours[place])) ++place;
+    return place < std::ssize(neighbours) ? place : -1;
+  }
+
+  bool advance_both_ways() {
+    while (!trail_.empty()) {
+      if (const int next = first_unvisited(trail_.back()); next >= 0) return enter(trail_.back(), next);
+      trail_.pop_back();
+      if (!trail_.empty() && !step_to(trail_.back())) return false;
+    }
+    return false;
+  }
+
+  // One-way edges cannot be stepped back. A node that cannot be had from here may be had later: it stays on the trail.
+  bool advance_one_way() {
+    std::vector<NodeId> cut_off;
+    for (; !trail_.empty(); trail_.pop_back()) {
+      const NodeId node = trail_.back();
+      if (first_unvisited(node) < 0) continue;
+      if (!way_to(node)) {
+        cut_off.push_back(node);
+        continue;
+      }
+      trail_.insert(trail_.end(), cut_off.rbegin(), cut_off.rend());
+      return walk_back_to(node);
+    }
+    return false;
+  }
+
+  // Along the way that way_to() found last, to the first node of it from which something is left, and there on.
+  bool walk_back_to(NodeId goal) {
+    std::vector<NodeId> way;
+    if (goal != walk_.back()) search_.append_path_to(goal, way);
+    for (const NodeId node : way) {
+      if (first_unvisited(walk_.back()) >= 0) break;
+      if (!step_to(node)) return false;
+    }
+    return enter(walk_.back(), first_unvisited(walk_.back()));
+  }
+
+  // Takes the step to the neighbour at a place, which is unvisited.
+  bool enter(NodeId from, int place) {
+    const NodeId node = open_.neighbours(from)[place];
+    if (!step_to(node)) return false;
+    visited_.insert(node);
+    trail_.push_back(node);
+    last_visit_ = walk_.size();
+    ++visits_;
+    return true;
+  }
+
+  // False where it cannot be paid for.
+  bool step_to(NodeId next) {
+    spendable_ -= open_.cost(walk_.back(), open_.index_of(walk_.back(), next));
+    if (spendable_ < 0) return false;
+    walk_.push_back(next);
+    return true;
+  }
+
+  // Looks for the cheapest way through visited ground; false where there is none.
+  bool way_to(NodeId goal) {
+    bool found = goal == walk_.back();
+    if (found) return true;
+    search_.run(open_, walk_.back(), kNoLimit, [&](NodeId node, double) {
+      if (!visited_.contains(node)) return NearestFirst::Next::kPast;
+      found = node == goal;
+      return found ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+    });
+    return found;
+  }
+
+  const Graph& open_;
+  NearestFirst& search_;
+  double spendable_;
+  NodeSet visited_;
+  std::vector<int> next_;  // [N], the place among a node's neighbours to look from
+  std::vector<NodeId> walk_;
+  std::vector<NodeId> trail_;
+  std::size_t last_visit_ = 1;  // length of the walk up to it
+  int visits_ = 1;
+};
 
 }  // namespace
 
-void SingleEpisodePolicy::act(std::span<const Observation> observations, std::span<int> actions) {
-  for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i]);
+void RandomPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& now = observations[i];
+    const bool directions = now.action_space == ActionSpace::kDirections;  // blocked ones too
+    const auto allowed = [&](int action) { return directions ? now.affordable(action) : now.legal(action); };
+    actions[i] = draw_action(now, allowed, rng_);
+  }
 }
 
-int RandomPolicy::act_on(const Observation& observation) {
-  const bool all = observation.action_space == ActionSpace::kDirections;  // blocked ones too
-  std::vector<int> actions;
-  for (int action = 0; action < observation.action_count(); ++action) {
-    if (all || observation.legal(action)) actions.push_back(action);
+void RandomWalkPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& now = observations[i];
+    actions[i] = draw_action(
+        now, [&](int action) { return now.legal(action); }, rng_);
   }
-  return actions.empty() ? kStop : actions[rng_.below(static_cast<std::uint32_t>(actions.size()))];
 }
 
-int RandomWalkPolicy::act_on(const Observation& observation) {
-  const World& world = *observation.world;
-  std::vector<NodeId> neighbours;
-  for (int i = 0; i < world.open().degree(observation.position); ++i) {
-    if (world.open().cost(observation.position, i) > observation.spendable) continue;
-    neighbours.push_back(world.open_neighbours(observation.position)[i]);
+Plan DepthFirstPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
+  require_plain_task(task, "dfs");
+  Ticker ticker(deadline, report, kVisitsPerTick);
+  DepthFirstWalk walk(task, search_);
+  while (walk.advance()) {
+    if (ticker.tick(walk.visits(), task.view.valid_count())) break;
   }
-  if (neighbours.empty()) return kStop;
-  return observation.action_to(neighbours[rng_.below(static_cast<std::uint32_t>(neighbours.size()))]);
+  return plan_of_walk(task, std::move(walk).take_walk());
 }
 
-int DepthFirstPolicy::act_on(const Observation& observation) {
-  const World& world = *observation.world;
-  const auto fresh = [&](NodeId node) {
-    const auto neighbours = world.open_neighbours(node);
-    return std::find_if(neighbours.begin(), neighbours.end(),
-                        [&](NodeId next) { return !observation.visited(next); }) != neighbours.end();
-  };
-  for (const NodeId next : world.open_neighbours(observation.position)) {
-    if (!observation.visited(next)) return step_to(observation, next);
-  }
-  // The way from the root to here: a node entered for the first time goes on it, a step back takes one off.
-  std::vector<NodeId> trail;
-  std::vector<bool> seen(observation.visits.size());
-  for (const NodeId node : observation.walk) {
-    if (!seen[node]) {
-      seen[node] = true;
-      trail.push_back(node);
-    } else if (!world.open().directed()) {
-      trail.pop_back();
-    }
-  }
-  if (!world.open().directed()) return trail.size() < 2 ? kStop : step_to(observation, trail[trail.size() - 2]);
-  // One-way edges cannot be stepped back: the cheapest way to the node entered last from which something is left.
-  const auto visited = [&](NodeId node) { return observation.visited(node); };
-  for (; !trail.empty(); trail.pop_back()) {
-    if (!fresh(trail.back())) continue;
-    const auto path = path_to_nearest(
-        world.open(), observation.position, [&](NodeId node) { return node == trail.back(); }, visited);
-    if (!path.empty()) return step_to(observation, path.front());
-  }
-  return kStop;
+Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
+  require_plain_task(task, "nearest");
+  using Next = NearestFirst::Next;
+  Ticker ticker(deadline, report, kVisitsPerTick);
+  NodeSet visited = task.visited_before();
+  int visits = visited.count();
+  double spendable = task.limit();
+  std::vector<NodeId> walk = {task.start};
+  do {
+    NodeId goal = kNoNode;
+    search_.run(task.view.open(), walk.back(), spendable, [&](NodeId node, double cost) {
+      if (visited.contains(node)) return Next::kThrough;
+      goal = node;
+      spendable -= cost;
+      return Next::kEnd;
+    });
+    if (goal == kNoNode) break;
+    search_.append_path_to(goal, walk);
+    visited.insert(goal);
+    ++visits;
+  } while (!ticker.tick(visits, task.view.valid_count()));
+  return plan_of_walk(task, std::move(walk));
 }
 
-int NearestUnvisitedPolicy::act_on(const Observation& observation) {
-  const World& world = *observation.world;
-  const std::vector<NodeId> path = path_to_nearest(
-      world.open(), observation.position, [&](NodeId node) { return !observation.visited(node); },
-      [](NodeId) { return true; });
-  return path.empty() ? kStop : step_to(observation, path.front());
+Plan walked_on(const Task& task, const Plan& plan, Deadline deadline) {
+  Task rest = task;
+  rest.start = plan.walk.back();
+  rest.budget = std::max(0.0, task.budget - plan.cost);
+  rest.visited = task.visited_before();
+  for (const NodeId node : plan.walk) rest.visited.insert(node);
+  const Plan more = NearestPlanner().plan(rest, deadline);
+  if (more.walk.size() == 1) return plan;
+  std::vector<NodeId> walk = plan.walk;
+  walk.insert(walk.end(), more.walk.begin() + 1, more.walk.end());
+  return plan_of_walk(task, std::move(walk));
+}
+
+Plan plan_by_deadline(const Task& task, Deadline deadline, const std::function<Plan(Deadline until)>& search) {
+  const auto begin = std::chrono::steady_clock::now();
+  Plan nearest = NearestPlanner().plan(task, deadline);
+  if (passed(deadline)) return nearest;
+  // Walking on takes as long again at most.
+  const Plan found = search(*deadline - 2 * (std::chrono::steady_clock::now() - begin));
+  Plan best = walked_on(task, found, deadline);
+  return better(nearest, best) ? nearest : best;
 }
 
 }  // namespace graphdrl

@@ -1,53 +1,61 @@
-// The policies that learn nothing: two random ones, depth first and nearest unvisited.
+// The rules that learn nothing: two random policies, depth first and nearest unvisited.
 #pragma once
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/policy.h"
+#include "graphdrl/graph/search.h"
+#include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
 
-// A policy that looks at one episode at a time.
-class SingleEpisodePolicy : public Policy {
- public:
-  void act(std::span<const Observation> observations, std::span<int> actions) final;
-
- protected:
-  virtual int act_on(const Observation& observation) = 0;
-};
-
 // Draws uniformly from all actions: on grids the four directions, blocked or not, as the paper's author's baseline.
-class RandomPolicy final : public SingleEpisodePolicy {
+// Where the walk must end at a node, from those that leave enough to get there.
+class RandomPolicy final : public Policy {
  public:
   explicit RandomPolicy(std::uint64_t seed) : rng_(seed) {}
+  void act(std::span<const Observation> observations, std::span<int> actions) override;
 
  private:
-  int act_on(const Observation& observation) override;
   Rng rng_;
 };
 
 // Draws uniformly from the open neighbours.
-class RandomWalkPolicy final : public SingleEpisodePolicy {
+class RandomWalkPolicy final : public Policy {
  public:
   explicit RandomWalkPolicy(std::uint64_t seed) : rng_(seed) {}
+  void act(std::span<const Observation> observations, std::span<int> actions) override;
 
  private:
-  int act_on(const Observation& observation) override;
   Rng rng_;
 };
 
 // Descends to the first unvisited neighbour in the graph's order, and steps back where there is none; in a directed
-// graph it walks to the node entered last from which something is left. Stops at the root, and where the budget does
-// not last. REQUIRES: it walked the episode from its start. Cost of a move: O(steps walked), in directed graphs O(nodes
-// + edges) on top.
-class DepthFirstPolicy final : public SingleEpisodePolicy {
-  int act_on(const Observation& observation) override;
+// graph it walks to the node entered last from which something is left. Ends with its last first visit, and where the
+// next step cannot be paid for. Cost: O(nodes + edges), in directed graphs O(nodes in reach) for every way back.
+class DepthFirstPlanner final : public Planner {
+ public:
+  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+
+ private:
+  NearestFirst search_;
 };
 
-// Walks the cheapest way to the nearest unvisited node, the first one that the search meets. Stops when nothing
-// unvisited can be reached or the next step cannot be paid for. Cost of a move: O(nodes + edges), times a logarithm
-// where edges have costs.
-class NearestUnvisitedPolicy final : public SingleEpisodePolicy {
-  int act_on(const Observation& observation) override;
+// Walks the cheapest way to the nearest unvisited node, the first one that the search meets, until none can be had for
+// what is left. Cost: the sum over first visits of what is nearer than they are.
+class NearestPlanner final : public Planner {
+ public:
+  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+
+ private:
+  NearestFirst search_;
 };
+
+// A plan that was cut short, walked on by the nearest rule.
+Plan walked_on(const Task& task, const Plan& plan, Deadline deadline);
+
+// What a planner does with its time where there is a deadline: the nearest rule's walk first, which costs next to
+// nothing; then search(until), which gives its best plan by an earlier time, walked on by the nearest rule. Gives the
+// better of the two.
+Plan plan_by_deadline(const Task& task, Deadline deadline, const std::function<Plan(Deadline until)>& search);
 
 }  // namespace graphdrl

@@ -5,32 +5,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/base/random.h"
-#include "graphdrl/graph/search.h"
+#include "graphdrl/planners/baselines.h"
+#include "graphdrl/planners/best_states.h"
 #include "graphdrl/planners/bound.h"
+#include "graphdrl/planners/visited_sets.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr std::uint64_t kHashSeed = 1;
-// A third of a level is kept by each of three measures, for none is right everywhere. They differ in their share of the
-// penalties: all of them serve mazes best, a quarter graphs without dead ends, none budgets that will not do for
-// everything, where what is left over costs nothing.
-constexpr std::array<double, 3> kPenaltyShares = {1, 0.25, 0};
-using Ranks = std::array<double, kPenaltyShares.size()>;  // lower is better
-constexpr double kUnscored = 1e9;                         // ranks first visits behind all that the network scored
-constexpr int kBlockNodes = 8192;                         // of states scored at once
+// Each level keeps a third by each ranking. They differ in their share of the penalties: all of them serve mazes best,
+// a quarter graphs without dead ends, none budgets that will not do for everything, where what is left over costs
+// nothing.
+constexpr std::array<double, kRankings> kPenaltyShares = {1, 0.25, 0};
+constexpr double kUnscored = 1e9;  // ranks first visits behind all that were scored
+constexpr int kExpansionsPerTick = 64;
 
-// How many partial walks of a level the guide scores. Of 50, 6 serve as well as all in loop mazes (docs/explorer.md);
-// by the root, for a wide beam is there to look beyond the network.
+// How many partial walks of a level the scorer sees. Of 50, 6 serve as well as all in loop mazes (docs/explorer.md); by
+// the root, for a wide beam is there to look beyond the network.
 int scored_per_level(int width) {
   return static_cast<int>(std::ceil(0.75 * std::sqrt(width)));
 }
 
-// A partial walk. Its visited nodes are a row of words in the level's memory.
 struct Partial {
   NodeId position;
   std::int64_t trail;  // its last first visit in the list of all kept ones
@@ -39,327 +36,289 @@ struct Partial {
   std::uint64_t hash;
 };
 
-// A partial walk with one more first visit, not built yet.
-struct Candidate {
-  int parent;
-  NodeId node;
-  double spent;
-  double penalties;
-  Ranks ranks;
-  std::uint64_t hash;
-};
-
 struct Link {
   NodeId node;
   std::int64_t before;  // place of the first visit before it
 };
 
+// The same number for the same node, spread over 64 bits [Steele et al. 2014].
+std::uint64_t spread(std::uint64_t node) {
+  std::uint64_t z = (node + 1) * 0x9e3779b97f4a7c15ULL;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
 class Beam {
  public:
-  Beam(const SearchStart& start, const BeamOptions& options, ExplorerGuide* guide)
-      : world_(*start.world),
-        open_(world_.open()),
-        into_(open_.reversed()),
-        start_(start),
-        width_(options.width),
-        branching_(options.branching),
-        cut_ties_(options.cut_ties),
-        guide_(guide),
-        scored_per_level_(guide == nullptr ? 0 : scored_per_level(width_)),
-        words_((static_cast<std::size_t>(open_.node_count()) + 63) / 64),
-        unit_(open_.mean_cost()),
-        nearest_(open_) {
-    Rng rng(kHashSeed);
-    for (NodeId node = 0; node < open_.node_count(); ++node) {
-      visit_hash_.push_back(rng.next());
-      position_hash_.push_back(rng.next());
-    }
-  }
+  Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer);
 
-  // Empty where the time is up.
-  std::optional<Plan> run(Deadline deadline);
+  Plan run(Deadline deadline, const Report& report);
 
  private:
-  const std::uint64_t* visited_of(int partial) const { return visited_.data() + partial * words_; }
-  static bool has(const std::uint64_t* set, NodeId node) { return (set[node / 64] >> (node % 64) & 1) != 0; }
-
-  // The candidates of every partial walk of the level; false where the time is up.
-  bool expand_level(Deadline deadline);
+  // Makes the candidates of every partial walk of the level; false where the time is up.
+  bool expand_level(Ticker& ticker);
   void expand(int parent);
-  void expand_guided(int first, int end);
-  Ranks ranks_of(double spent, double penalties) const;
-  void add(const Candidate& candidate);
+  void expand_scored(int first, int end);
+  Rankings rankings_of(double spent, double penalties) const;
+  Rankings all_rankings(double spent, double penalties) const;
+  double most_useful_cost(const Partial& from) const;
   void keep_best();
-  std::vector<NodeId> unroll(std::int64_t trail) const;
+  Plan best_plan(bool complete);
 
-  const World& world_;
-  const Graph& open_;
-  Graph into_;  // open_ turned round
-  const SearchStart& start_;
+  const Task& task_;
+  const View& view_;
+  double limit_;
+  double unit_;
   int width_;
   int branching_;
-  bool cut_ties_;
-  ExplorerGuide* guide_;  // null where partial walks are ranked by penalties
-  int scored_per_level_;  // partial walks that the guide scores, from the front of a level; 0 without one
+  int most_branches_;         // among equally near ones
+  FirstVisitScorer* scorer_;  // null where partial walks are ranked by penalties
+  int scored_per_level_;      // partial walks that the scorer sees, from the front of a level; 0 without one
   bool dropped_ = false;
-  std::size_t words_;
-  double unit_;
+  int visited_;  // by each partial walk of the level
   NearestFirst nearest_;
-  std::vector<std::uint64_t> visit_hash_;
-  std::vector<std::uint64_t> position_hash_;
 
   std::vector<Partial> level_;
-  std::vector<std::uint64_t> visited_;  // [level_.size(), words_]
-  std::vector<Candidate> candidates_;
+  VisitedSets visited_sets_;
+  BestStates candidates_;
   std::vector<Link> trail_;
-  std::unordered_map<std::uint64_t, std::size_t> best_of_state_;
   std::vector<Partial> next_level_;
-  std::vector<std::uint64_t> next_visited_;
-  ExplorerBatch batch_;
-  std::vector<NodeId> targets_;
-  std::vector<double> costs_;
-  std::vector<float> shortfall_;
+  std::vector<VisitedSets::Child> children_;
+  std::vector<ExplorationState> states_;
+  std::vector<ScoredVisit> scored_;
 };
 
-std::optional<Plan> Beam::run(Deadline deadline) {
-  visited_.assign(words_, 0);
-  Partial root{.position = start_.position, .trail = -1, .spent = 0, .penalties = 0, .hash = 0};
-  for (const NodeId node : world_.valid_nodes()) {
-    if (!start_.visited[node]) continue;
-    visited_[node / 64] |= std::uint64_t{1} << (node % 64);
-    root.hash ^= visit_hash_[node];
-  }
-  for (const NodeId node : world_.valid_nodes()) {
-    if (start_.visited[node]) continue;
+Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer)
+    : task_(task),
+      view_(task.view),
+      limit_(task.limit()),
+      unit_(view_.open().mean_cost()),
+      width_(options.width),
+      branching_(options.branching),
+      most_branches_(options.cut_ties ? options.branching : kTiesPerBranch * options.branching),
+      scorer_(scorer),
+      scored_per_level_(scorer == nullptr ? 0 : scored_per_level(width_)),
+      visited_(0),
+      visited_sets_(task.visited_before(), view_.node_count()),
+      candidates_(static_cast<std::size_t>(width_)) {
+  Partial root{.position = task.start, .trail = -1, .spent = 0, .penalties = 0, .hash = 0};
+  const NodeSetView visited = visited_sets_[0];
+  for (const NodeId node : view_.valid_nodes()) {
+    if (visited.contains(node)) {
+      ++visited_;
+      continue;
+    }
     int neighbours = 0;
-    for (const NodeId next : open_.neighbours(node)) neighbours += !start_.visited[next];
+    for (const NodeId next : view_.open_neighbours(node)) neighbours += !visited.contains(next);
     root.penalties += leftover_penalty(neighbours);
   }
   level_.assign(1, root);
-  std::int64_t best = -1;
-  while (!level_.empty()) {
-    // Every partial walk of a level has visited as many nodes: the cheapest of the last level is the answer.
-    best = std::min_element(level_.begin(), level_.end(), [](const Partial& a, const Partial& b) {
-             return a.spent < b.spent;
-           })->trail;
-    candidates_.clear();
-    best_of_state_.clear();
-    if (!expand_level(deadline)) return std::nullopt;
-    keep_best();
-  }
-  return Plan{.walk = unroll(best), .optimal = !dropped_};
 }
 
-bool Beam::expand_level(Deadline deadline) {
+Plan Beam::run(Deadline deadline, const Report& report) {
+  Ticker ticker(deadline, report, kExpansionsPerTick);
+  // Every partial walk of a level has visited as many nodes: the cheapest of the last level is the answer.
+  for (;;) {
+    candidates_.clear();
+    if (!expand_level(ticker)) return best_plan(/*complete=*/false);
+    if (candidates_.empty()) return best_plan(/*complete=*/true);
+    keep_best();
+    ++visited_;
+  }
+}
+
+Plan Beam::best_plan(bool complete) {
+  const auto best = std::min_element(level_.begin(), level_.end(),
+                                     [](const Partial& a, const Partial& b) { return a.spent < b.spent; });
+  std::vector<NodeId> order;
+  for (std::int64_t trail = best->trail; trail >= 0; trail = trail_[trail].before) order.push_back(trail_[trail].node);
+  std::reverse(order.begin(), order.end());
+  return plan_of_walk(task_, walk_through(task_, order, nearest_), complete && !dropped_);
+}
+
+bool Beam::expand_level(Ticker& ticker) {
   const int count = static_cast<int>(level_.size());
   const int scored = std::min(scored_per_level_, count);
-  const int block = std::max(1, kBlockNodes / std::min(world_.valid_count(), kExplorerScope));
-  for (int first = 0; first < scored; first += block) {
-    if (passed(deadline)) return false;
-    expand_guided(first, std::min(first + block, scored));
+  for (int first = 0; first < scored;) {
+    const int end = std::min(first + scorer_->most_states(view_), scored);
+    expand_scored(first, end);
+    first = end;
+    if (ticker.tick(visited_, view_.valid_count(), kExpansionsPerTick)) return false;
   }
   for (int parent = scored; parent < count; ++parent) {
-    if (parent % 64 == 0 && passed(deadline)) return false;
+    if (ticker.tick(visited_, view_.valid_count())) return false;
     expand(parent);
   }
   return true;
 }
 
-Ranks Beam::ranks_of(double spent, double penalties) const {
-  Ranks ranks{};
-  for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i] = spent + kPenaltyShares[i] * unit_ * penalties;
-  return ranks;
+Rankings Beam::rankings_of(double spent, double penalties) const {
+  Rankings rankings{};
+  for (std::size_t i = 0; i < rankings.size(); ++i) rankings[i] = spent + kPenaltyShares[i] * unit_ * penalties;
+  return rankings;
+}
+
+// Of a first visit that is not scored.
+Rankings Beam::all_rankings(double spent, double penalties) const {
+  const Rankings plain = rankings_of(spent, penalties);
+  return scorer_ == nullptr ? plain : Rankings{kUnscored + spent / unit_, plain[0], plain[1]};
+}
+
+// A first visit that costs more is behind `width` others by every ranking, whatever it does to the penalties.
+double Beam::most_useful_cost(const Partial& from) const {
+  double most = 0;
+  const Rankings& worst = candidates_.worst_useful();
+  const Rankings least = rankings_of(from.spent, from.penalties - kIsolatedPenalty);
+  if (scorer_ == nullptr) {
+    for (std::size_t i = 0; i < worst.size(); ++i) most = std::max(most, worst[i] - least[i]);
+    return most;
+  }
+  most = (worst[0] - kUnscored) * unit_ - from.spent;
+  return std::max({most, worst[1] - least[0], worst[2] - least[1]});
 }
 
 void Beam::expand(int parent) {
   using Next = NearestFirst::Next;
   const Partial& from = level_[parent];
-  const std::uint64_t* const visited = visited_of(parent);
+  const NodeSetView visited = visited_sets_[parent];
   int branches = 0;
   double last_cost = 0;
-  nearest_.run(from.position, start_.limit() - from.spent, [&](NodeId node, double cost) {
-    if (has(visited, node)) return Next::kThrough;
-    if (branches >= branching_ && (cut_ties_ || cost > last_cost)) {
+  candidates_.begin_parent();
+  double most_useful = most_useful_cost(from);
+  nearest_.run(view_.open(), from.position, limit_ - from.spent, [&](NodeId node, double cost) {
+    if (cost > most_useful) {
+      dropped_ = true;
+      return Next::kEnd;
+    }
+    if (visited.contains(node)) return Next::kThrough;
+    if (branches >= most_branches_ || (branches >= branching_ && cost > last_cost)) {
       dropped_ = true;
       return Next::kEnd;
     }
     ++branches;
     last_cost = cost;
+    // The node's own penalty goes, others can only rise: most candidates need no closer look.
     const double spent = from.spent + cost;
-    const double penalties = from.penalties + change_of_penalties(open_, into_, visited, node);
-    const Ranks plain = ranks_of(spent, penalties);
-    add({.parent = parent,
-         .node = node,
-         .spent = spent,
-         .penalties = penalties,
-         .ranks = guide_ == nullptr ? plain : Ranks{kUnscored + spent / unit_, plain[0], plain[1]},
-         .hash = from.hash ^ visit_hash_[node]});
+    const double own = leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
+    if (candidates_.is_useless(all_rankings(spent, from.penalties - own))) {
+      dropped_ = true;
+      return Next::kPast;
+    }
+    const double penalties = from.penalties + change_of_penalties(view_, visited, node);
+    candidates_.add({.parent = parent,
+                     .node = node,
+                     .spent = spent,
+                     .penalties = penalties,
+                     .rankings = all_rankings(spent, penalties),
+                     .visited_hash = from.hash ^ spread(node)});
+    most_useful = most_useful_cost(from);
     return Next::kPast;
   });
 }
 
-void Beam::expand_guided(int first, int end) {
-  batch_.clear();
-  targets_.clear();
-  costs_.clear();
-  ExplorerEncoder& encoder = guide_->encoder_for(world_);
+void Beam::expand_scored(int first, int end) {
+  states_.clear();
   for (int parent = first; parent < end; ++parent) {
     const Partial& from = level_[parent];
-    const auto visits = encoder.append(
-        {.visited = visited_of(parent), .position = from.position, .spendable = start_.limit() - from.spent},
-        kExplorerScope, batch_);
-    dropped_ = dropped_ || encoder.overlooked();
-    for (const FirstVisit& visit : visits) {
-      targets_.push_back(visit.node);
-      costs_.push_back(visit.cost);
-    }
+    states_.push_back({.visited = visited_sets_[parent],
+                       .visited_count = visited_,
+                       .position = from.position,
+                       .spendable = limit_ - from.spent});
   }
-  if (targets_.empty()) return;
-  guide_->score(batch_, shortfall_);
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    const int parent = first + batch_.state[i];
-    const double spent = level_[parent].spent + costs_[i];
+  dropped_ = scorer_->score(view_, states_, scored_) || dropped_;
+  for (const ScoredVisit& scored : scored_) {
+    const int parent = first + scored.state;
+    const Partial& from = level_[parent];
+    const double spent = from.spent + scored.visit.cost;
     const double penalties =
-        level_[parent].penalties + change_of_penalties(open_, into_, visited_of(parent), targets_[i]);
-    const double shortfall = double{shortfall_[i]} - batch_.ceiling[batch_.state[i]];
-    const Ranks plain = ranks_of(spent, penalties);
-    add({.parent = parent,
-         .node = targets_[i],
-         .spent = spent,
-         .penalties = penalties,
-         .ranks = {shortfall, plain[0], plain[1]},
-         .hash = level_[parent].hash ^ visit_hash_[targets_[i]]});
+        from.penalties + change_of_penalties(view_, states_[scored.state].visited, scored.visit.node);
+    const Rankings plain = rankings_of(spent, penalties);
+    candidates_.add({.parent = parent,
+                     .node = scored.visit.node,
+                     .spent = spent,
+                     .penalties = penalties,
+                     .rankings = {scored.score, plain[0], plain[1]},
+                     .visited_hash = from.hash ^ spread(scored.visit.node)});
   }
-}
-
-// Of candidates that lead to the same state, only the cheapest stays; what the guide says of a dearer one holds for it
-// at least.
-void Beam::add(const Candidate& candidate) {
-  const auto [known, fresh] =
-      best_of_state_.try_emplace(candidate.hash ^ position_hash_[candidate.node], candidates_.size());
-  if (fresh) {
-    candidates_.push_back(candidate);
-    return;
-  }
-  Candidate& other = candidates_[known->second];
-  const double promise = std::min(candidate.ranks[0], other.ranks[0]);
-  if (candidate.spent < other.spent) other = candidate;
-  other.ranks[0] = promise;
 }
 
 void Beam::keep_best() {
-  constexpr std::size_t kRanks = kPenaltyShares.size();
-  const auto by = [](std::size_t rank) {
-    return [rank](const Candidate& a, const Candidate& b) {
-      if (a.ranks[rank] != b.ranks[rank]) return a.ranks[rank] < b.ranks[rank];
-      return a.parent != b.parent ? a.parent < b.parent : a.node < b.node;
-    };
-  };
-  const std::size_t kept = std::min(candidates_.size(), static_cast<std::size_t>(width_));
-  if (kept < candidates_.size()) {
-    dropped_ = true;
-    auto chosen = candidates_.begin();
-    for (std::size_t rank = 0; rank < kRanks; ++rank) {
-      const std::size_t up_to = (kept * (rank + 1) + kRanks - 1) / kRanks;
-      const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(up_to);
-      if (chosen < end) std::nth_element(chosen, end, candidates_.end(), by(rank));
-      chosen = end;
-    }
-    candidates_.resize(kept);
-  }
-  std::sort(candidates_.begin(), candidates_.end(), by(0));
-  if (guide_ != nullptr) {
-    // To the front of the level, for the guide: its own best, then others that look good without it.
-    const int others = scored_per_level_ / 3;
-    const std::ptrdiff_t own = std::min<std::ptrdiff_t>(scored_per_level_ - others, std::ssize(candidates_));
-    std::sort(candidates_.begin() + own, candidates_.end(), by(1));
-  }
+  dropped_ = candidates_.keep_best() || dropped_;
+  // To the front of the level, for the scorer: its own best, then others that look good without it.
+  candidates_.sort(0, 0);
+  if (scorer_ != nullptr) candidates_.sort(1, scored_per_level_ - scored_per_level_ / 3);
   next_level_.clear();
-  next_visited_.resize(kept * words_);
-  for (std::size_t i = 0; i < kept; ++i) {
-    const Candidate& candidate = candidates_[i];
-    std::copy_n(visited_of(candidate.parent), words_, next_visited_.data() + i * words_);
-    next_visited_[i * words_ + candidate.node / 64] |= std::uint64_t{1} << (candidate.node % 64);
+  children_.clear();
+  for (const Candidate& candidate : candidates_.all()) {
     trail_.push_back({candidate.node, level_[candidate.parent].trail});
+    children_.push_back({candidate.parent, candidate.node});
     next_level_.push_back({.position = candidate.node,
                            .trail = std::ssize(trail_) - 1,
                            .spent = candidate.spent,
                            .penalties = candidate.penalties,
-                           .hash = candidate.hash});
+                           .hash = candidate.visited_hash});
   }
+  visited_sets_.advance(children_);
   level_.swap(next_level_);
-  visited_.swap(next_visited_);
 }
 
-std::vector<NodeId> Beam::unroll(std::int64_t trail) const {
-  std::vector<NodeId> order;
-  for (; trail >= 0; trail = trail_[trail].before) order.push_back(trail_[trail].node);
-  std::reverse(order.begin(), order.end());
-  return walk_through(start_, order);
-}
-
-// The most memory a beam can come to need, ties at the last branch aside: every level's chain of first visits, two
-// levels of partial walks, and candidates of each; of a guided beam, as if all were scored.
-double bytes_needed(const World& world, const BeamOptions& options, bool guided) {
-  constexpr double kCandidateBytes = sizeof(Candidate) + 48;  // and its place in best_of_state_
-  const double nodes = world.valid_count();
-  const double branches =
-      std::min<double>(guided ? std::max(options.branching, kExplorerScope) : options.branching, nodes);
+// The most memory a beam can come to need: every level's chain of first visits, two levels of partial walks with their
+// rows of bits, and the candidates of each; of a scored beam, as if all were scored.
+double bytes_needed(const View& view, const BeamOptions& options, const FirstVisitScorer* scorer) {
+  const double nodes = view.valid_count();
+  const double ties = options.cut_ties ? 1 : kTiesPerBranch;
+  const double scored = scorer == nullptr ? 0 : scorer->most_visits();
+  const double branches = std::min(nodes, std::max(ties * options.branching, scored));
   return options.width * (nodes * sizeof(Link) + 2 * (nodes / 8 + sizeof(Partial)) + branches * kCandidateBytes);
 }
 
 }  // namespace
 
-std::optional<Plan> beam_plan(const SearchStart& start, const BeamOptions& options, Deadline deadline,
-                              ExplorerGuide* guide) {
-  const double bytes = bytes_needed(*start.world, options, guide != nullptr);
+Plan beam_plan(const Task& task, const BeamOptions& options, Deadline deadline, FirstVisitScorer* scorer,
+               const Report& report) {
+  require_plain_task(task, scorer == nullptr ? "beam" : "guided");
+  const double bytes = bytes_needed(task.view, options, scorer);
   if (bytes > kMaxBeamBytes) {
     throw Error({.what = "the beam is too wide for this world",
                  .expected = fmt::format("a width up to {:.0f}", std::floor(kMaxBeamBytes / bytes * options.width)),
                  .got = fmt::format("{}", options.width),
-                 .where = start.world->name()});
+                 .where = task.view.name()});
   }
-  return Beam(start, options, guide).run(deadline);
+  return Beam(task, options, scorer).run(deadline, report);
 }
 
-bool BeamPolicy::improve(const SearchStart& start, const BeamOptions& options, Deadline deadline,
-                         std::optional<Plan>& best) {
-  const auto take = [&](std::optional<Plan> next) {
-    if (!next) return false;
-    const int gain = best ? visited_after(start, next->walk) - visited_after(start, best->walk) : 1;
-    const auto cheaper = [&] { return walk_cost(*start.world, next->walk) < walk_cost(*start.world, best->walk); };
-    if (gain > 0 || (gain == 0 && (next->optimal || cheaper()))) best = std::move(next);
-    return true;
-  };
-  // The very first search is finished whatever it takes, so that there is a walk.
-  const bool first = !best;
-  if (!take(beam_plan(start, options, first ? Deadline() : deadline))) return false;
-  if (!guide_ || best->optimal) return true;
-  if (first && limit_) take(explorer_plan(start, *guide_, deadline));
-  return take(beam_plan(start, options, deadline, &*guide_));
+Plan BeamPlanner::search_once(const Task& task, const BeamOptions& options, Deadline deadline, const Report& report) {
+  Plan best = beam_plan(task, options, deadline, nullptr, report);
+  if (scorer_ == nullptr || best.optimal) return best;
+  return better_of(std::move(best), beam_plan(task, options, deadline, scorer_.get(), report));
 }
 
-Plan BeamPolicy::plan(const SearchStart& start) {
-  const Deadline deadline = deadline_after(limit_);
-  std::optional<Plan> best;
-  improve(start, options_, deadline, best);
-  const int most = limit_ ? max_visited(start) : 0;
+Plan BeamPlanner::search_until(const Task& task, Deadline deadline, const Report& report) {
   const auto fits = [&](const BeamOptions& options) {
-    return options.width <= kMaxBeamWidth && bytes_needed(*start.world, options, guide_.has_value()) <= kMaxBeamBytes;
+    return options.width <= kMaxBeamWidth && bytes_needed(task.view, options, scorer_.get()) <= kMaxBeamBytes;
   };
+  Plan best = search_once(task, options_, deadline, report);
+  if (other_ != nullptr && !best.optimal) best = better_of(std::move(best), other_->plan(task, deadline, report));
   // Each of the two grows as long as there is room.
-  for (BeamOptions wider = options_; limit_;) {
+  for (BeamOptions wider = options_; !best.optimal && !passed(deadline);) {
     const BeamOptions before = wider;
-    wider.branching = std::min(wider.branching, start.world->valid_count()) * 2;
+    wider.branching = std::min(wider.branching, task.view.valid_count()) * 2;
     if (!fits(wider)) wider.branching = before.branching;
     wider.width *= 2;
     if (!fits(wider)) wider.width = before.width;
     const bool grows = wider.width > before.width ||
-                       (wider.branching > before.branching && before.branching < start.world->valid_count());
-    best->optimal = best->optimal || visited_after(start, best->walk) >= most;
-    if (best->optimal || !grows || !improve(start, wider, deadline, best)) break;
+                       (wider.branching > before.branching && before.branching < task.view.valid_count());
+    if (!grows) break;
+    best = better_of(std::move(best), search_once(task, wider, deadline, report));
   }
-  return *std::move(best);
+  return best;
+}
+
+Plan BeamPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
+  require_plain_task(task, scorer_ == nullptr ? "beam" : "guided");
+  if (!deadline) return search_once(task, options_, {}, report);
+  return plan_by_deadline(task, deadline, [&](Deadline until) { return search_until(task, until, report); });
 }
 
 }  // namespace graphdrl

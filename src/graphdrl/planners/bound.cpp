@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <optional>
+#include <queue>
 
+#include "graphdrl/graph/blocks.h"
 #include "graphdrl/graph/search.h"
 
 namespace graphdrl {
@@ -11,161 +16,204 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
+// The nodes that a walk can visit: reached within the budget, and left for the end.
+struct Reach {
+  explicit Reach(const Task& task);
+
+  std::vector<NodeId> nodes;   // the start first
+  std::vector<bool> contains;  // [N]
+  std::vector<double> prizes;  // [N], of first visits: 0 where visited before
+};
+
+Reach::Reach(const Task& task) : contains(task.view.node_count()), prizes(task.view.node_count()) {
+  const bool anywhere = task.ends_anywhere();
+  const std::vector<double> to_end = anywhere ? std::vector<double>() : costs_to(task.view.into(), task.end);
+  const auto take = [&](NodeId node, double cost) {
+    if (!anywhere && cost + to_end[node] > task.limit()) return;
+    contains[node] = true;
+    nodes.push_back(node);
+    if (task.visited.empty() || !task.visited.contains(node)) prizes[node] = task.view.prize(node);
+  };
+  take(task.start, 0);
+  NearestFirst().run(task.view.open(), task.start, task.limit(), [&](NodeId node, double cost) {
+    take(node, cost);
+    return NearestFirst::Next::kThrough;
+  });
+}
+
+// The tree of blocks, with what it costs to arrive in them.
+struct ArrivalTree {
+  ArrivalTree(const Task& task, const Reach& reach);
+
+  Blocks blocks;
+  std::vector<double> arrival;  // by place among the blocks' members: the cheapest edge of its block into a member
+  std::vector<double> back;     // [blocks], likewise into the root; kNever where there is none
+  std::vector<bool> holds_end;  // [blocks], where the walk must end: in it, or in what hangs from it
+};
+
+ArrivalTree::ArrivalTree(const Task& task, const Reach& reach)
+    : blocks(task.view.open(), task.view.into(), task.start, reach.contains) {
+  const Graph& into = task.view.into();
+  std::vector<int> block_of(task.view.node_count(), -1);
+  std::vector<bool> end_below(task.view.node_count());
+  if (!task.ends_anywhere()) end_below[task.end] = true;
+  for (int block = 0; block < blocks.count(); ++block) {
+    const NodeId root = blocks.root(block);
+    const auto members = blocks.members(block);
+    block_of[root] = block;
+    for (const NodeId member : members) block_of[member] = block;
+    const auto cheapest = [&](NodeId node) {
+      double least = kNever;
+      const auto from = into.neighbours(node);
+      for (int i = 0; i < std::ssize(from); ++i) {
+        if (block_of[from[i]] == block) least = std::min(least, into.cost(node, i));
+      }
+      return least;
+    };
+    bool end_here = false;
+    for (const NodeId member : members) {
+      arrival.push_back(cheapest(member));
+      end_here = end_here || end_below[member];
+    }
+    back.push_back(cheapest(root));
+    holds_end.push_back(end_here);
+    if (end_here && root != task.end) end_below[root] = true;
+  }
+}
+
+// Something to pay for, by cost per prize; a heap has the cheapest on top.
+struct Item {
+  double cost;
+  double prize;
+  bool operator<(const Item& other) const { return cost * other.prize > other.cost * prize; }
+};
+using Items = std::priority_queue<Item>;
+
+// Puts all of one heap into the other, the smaller into the larger.
+void merge(Items& into, Items& from) {
+  if (into.size() < from.size()) std::swap(into, from);
+  for (; !from.empty(); from.pop()) into.push(from.top());
+}
+
+// The first relaxation of bound.h.
+double fractional_bound(const Task& task, const Reach& reach, const ArrivalTree& tree) {
+  std::vector<Items> hanging(task.view.node_count());        // what hangs from a node
+  std::vector<double> deepest(task.view.node_count(), 0.0);  // the most that not coming back from there can save
+  for (int block = 0; block < tree.blocks.count(); ++block) {
+    Items items;
+    double saved = 0;
+    const auto members = tree.blocks.members(block);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const double prize = reach.prizes[members[i]];
+      if (prize > 0) items.push({tree.arrival[tree.blocks.first_member(block) + i], prize});
+      merge(items, hanging[members[i]]);
+      saved = std::max(saved, deepest[members[i]]);
+    }
+    const NodeId root = tree.blocks.root(block);
+    const double back = tree.back[block] == kNever ? 0 : tree.back[block];
+    if (!tree.holds_end[block] && !items.empty()) {
+      // Whatever is had here pays the way back: spread over the items for which that is cheapest.
+      Item whole{back, 0};
+      while (!items.empty() && (whole.prize == 0 || whole < items.top())) {
+        whole.cost += items.top().cost;
+        whole.prize += items.top().prize;
+        items.pop();
+      }
+      items.push(whole);
+    }
+    if (task.ends_anywhere()) deepest[root] = std::max(deepest[root], saved + back);
+    merge(hanging[root], items);
+  }
+  double left = task.limit() + deepest[task.start];
+  double prize = reach.prizes[task.start];
+  Items& items = hanging[task.start];
+  for (; !items.empty() && left >= 0; items.pop()) {
+    const Item& item = items.top();
+    prize += item.cost <= left ? item.prize : item.prize * left / item.cost;
+    left -= item.cost;
+  }
+  return prize;
+}
+
 // Least costs by number of nodes visited, from 0 up; kNever where so many cannot be had.
 using Costs = std::vector<double>;
-
-// The least cost to visit k nodes in two independent parts together, for every k that `limit` allows.
-Costs min_plus_convolution(const Costs& one, const Costs& other, double limit) {
-  Costs sum(one.size() + other.size() - 1, kNever);
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    if (one[i] > limit) continue;
-    for (std::size_t j = 0; j < other.size(); ++j) sum[i + j] = std::min(sum[i + j], one[i] + other[j]);
-  }
-  while (sum.back() > limit) sum.pop_back();  // k = 0 costs nothing
-  return sum;
-}
-
-void lower_to(Costs& costs, const Costs& other) {
-  if (costs.size() < other.size()) costs.resize(other.size(), kNever);
-  for (std::size_t i = 0; i < other.size(); ++i) costs[i] = std::min(costs[i], other[i]);
-}
 
 // A branch of the tree of blocks, seen from the node it hangs from, which is not counted.
 struct Branch {
   Costs closed = {0};  // the walk comes back
-  Costs open = {0};    // the walk may end there
+  Costs open = {0};    // the walk ends there, if it can
 };
 
-// Adds a branch beside another: the walk ends in one of them at most.
-void add_beside(Branch& branch, const Branch& other, double limit) {
-  Costs open = min_plus_convolution(branch.open, other.closed, limit);
-  lower_to(open, min_plus_convolution(branch.closed, other.open, limit));
-  branch.open = std::move(open);
-  branch.closed = min_plus_convolution(branch.closed, other.closed, limit);
-}
-
-class ArrivalBound {
+// The second relaxation of bound.h.
+class Knapsack {
  public:
-  ArrivalBound(const Graph& graph, const Graph& back, NodeId start, double limit)
-      : graph_(graph), back_(back), start_(start), limit_(limit), reached_(graph.node_count()) {
-    reached_[start] = true;
-    reached_nodes_ = {start};
-    NearestFirst(graph_).run(start, limit, [&](NodeId node, double) {
-      reached_[node] = true;
-      reached_nodes_.push_back(node);
-      return NearestFirst::Next::kThrough;
-    });
-  }
+  Knapsack(const Task& task, const ArrivalTree& tree, Deadline deadline)
+      : task_(task), tree_(tree), limit_(task.limit()), deadline_(deadline), hanging_(task.view.node_count()) {}
 
-  // What can be reached within the limit, the start first.
-  const std::vector<NodeId>& reached() const { return reached_nodes_; }
-
-  // Nodes besides the start that can be had within the limit.
-  int most_visited() {
-    hanging_.resize(graph_.node_count());
-    find_blocks();
-    return static_cast<int>(hanging_[start_].open.size()) - 1;
+  // Nodes besides the start that can be had within the limit; empty where that takes too long to find out.
+  std::optional<int> most_visited() {
+    for (int block = 0; block < tree_.blocks.count(); ++block) {
+      close_block(block);
+      if (sums_ > kKnapsackSums || passed(deadline_)) return std::nullopt;
+    }
+    const Branch all = hanging_[task_.start] ? *hanging_[task_.start] : Branch();
+    const bool closed = !task_.ends_anywhere() && task_.end == task_.start;
+    return static_cast<int>((closed ? all.closed : all.open).size()) - 1;
   }
 
  private:
-  // The undirected neighbours of a node: where edges lead, then where they come from.
-  NodeId neighbour(NodeId node, std::size_t index) const {
-    const auto out = graph_.neighbours(node);
-    return index < out.size() ? out[index] : back_.neighbours(node)[index - out.size()];
-  }
-  std::size_t neighbour_count(NodeId node) const {
-    return graph_.neighbours(node).size() + (graph_.directed() ? back_.neighbours(node).size() : 0);
-  }
-
-  void find_blocks();
-  void close_block(NodeId root, const std::vector<NodeId>& members);
-  double cheapest_arrival(NodeId node) const;
-
-  const Graph& graph_;
-  const Graph& back_;  // graph_ turned round
-  NodeId start_;
-  double limit_;
-  std::vector<bool> reached_;
-  std::vector<NodeId> reached_nodes_;
-  std::vector<Branch> hanging_;  // [N], what hangs from a node, away from the start
-  std::vector<int> block_of_;    // [N], marks the members of the block being closed
-  int block_ = 0;
-};
-
-// Depth-first search from the start; a block is closed, with all that hangs from its nodes, before the branch that its
-// root hangs in.
-void ArrivalBound::find_blocks() {
-  struct Frame {
-    NodeId node;
-    NodeId parent;
-    std::size_t next = 0;
-  };
-  std::vector<int> depth(graph_.node_count(), -1);
-  std::vector<int> low(graph_.node_count());
-  std::vector<NodeId> open_nodes;  // of blocks not closed yet
-  std::vector<Frame> stack = {{start_, kNoNode}};
-  int clock = 0;
-  block_of_.assign(graph_.node_count(), -1);
-  depth[start_] = low[start_] = clock++;
-  while (!stack.empty()) {
-    Frame& frame = stack.back();
-    const NodeId node = frame.node;
-    if (frame.next < neighbour_count(node)) {
-      const NodeId next = neighbour(node, frame.next++);
-      if (!reached_[next] || next == frame.parent) continue;
-      if (depth[next] >= 0) {
-        low[node] = std::min(low[node], depth[next]);
-        continue;
-      }
-      depth[next] = low[next] = clock++;
-      open_nodes.push_back(next);
-      stack.push_back({next, node});
-      continue;
+  // The least cost to visit k nodes in two independent parts together, for every k that the limit allows.
+  Costs convolution(const Costs& one, const Costs& other) {
+    sums_ += static_cast<double>(one.size()) * static_cast<double>(other.size());
+    if (sums_ > kKnapsackSums) return {0};  // too long: given up
+    Costs sum(one.size() + other.size() - 1, kNever);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      if (one[i] > limit_) continue;
+      for (std::size_t j = 0; j < other.size(); ++j) sum[i + j] = std::min(sum[i + j], one[i] + other[j]);
     }
-    const NodeId parent = frame.parent;
-    stack.pop_back();
-    if (parent == kNoNode) break;
-    low[parent] = std::min(low[parent], low[node]);
-    if (low[node] < depth[parent]) continue;
-    std::vector<NodeId> members;
-    do {
-      members.push_back(open_nodes.back());
-      open_nodes.pop_back();
-    } while (members.back() != node);
-    close_block(parent, members);
+    while (sum.back() > limit_) sum.pop_back();  // k = 0 costs nothing
+    return sum;
   }
-}
 
-// The least cost of an edge of the block being closed that leads to a node.
-double ArrivalBound::cheapest_arrival(NodeId node) const {
-  double least = kNever;
-  const auto from = back_.neighbours(node);
-  for (int i = 0; i < std::ssize(from); ++i) {
-    if (block_of_[from[i]] == block_) least = std::min(least, back_.cost(node, i));
+  // Adds a branch beside another: the walk ends in one of them at most.
+  void add_beside(Branch& branch, const Branch& other) {
+    Costs open = convolution(branch.open, other.closed);
+    const Costs ends_in_other = convolution(branch.closed, other.open);
+    if (open.size() < ends_in_other.size()) open.resize(ends_in_other.size(), kNever);
+    for (std::size_t i = 0; i < ends_in_other.size(); ++i) open[i] = std::min(open[i], ends_in_other[i]);
+    branch.open = std::move(open);
+    branch.closed = convolution(branch.closed, other.closed);
   }
-  return least;
-}
 
-// Adds a block, and what hangs from its members, to what hangs from its root.
-void ArrivalBound::close_block(NodeId root, const std::vector<NodeId>& members) {
-  ++block_;
-  block_of_[root] = block_;
-  for (const NodeId member : members) block_of_[member] = block_;
-  // Members from which nothing hangs: the cheapest first. Sums of sorted costs are convex, so they go in at once.
-  std::vector<double> plain;
-  Branch block;
-  const auto behind = [](const Costs& costs, double arrival) {
+  Costs behind(const Costs& costs, double arrival) {
+    sums_ += static_cast<double>(costs.size());
     Costs result = {0};
     for (const double cost : costs) result.push_back(arrival + cost);
     return result;
-  };
-  for (const NodeId member : members) {
-    const double arrival = cheapest_arrival(member);
-    if (hanging_[member].open.size() == 1) {
-      plain.push_back(arrival);
+  }
+
+  void close_block(int block);
+
+  const Task& task_;
+  const ArrivalTree& tree_;
+  double limit_;
+  Deadline deadline_;
+  double sums_ = 0;
+  std::vector<std::unique_ptr<Branch>> hanging_;  // [N], what hangs from a node, away from the start; null for nothing
+};
+
+// Adds a block, and what hangs from its members, to what hangs from its root.
+void Knapsack::close_block(int block) {
+  // Members from which nothing hangs: the cheapest first. Sums of sorted costs are convex, so they go in at once.
+  std::vector<double> plain;
+  Branch whole;
+  const auto members = tree_.blocks.members(block);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const double arrival = tree_.arrival[tree_.blocks.first_member(block) + i];
+    if (const std::unique_ptr<Branch> branch = std::move(hanging_[members[i]])) {
+      add_beside(whole, {behind(branch->closed, arrival), behind(branch->open, arrival)});
     } else {
-      add_beside(block, {behind(hanging_[member].closed, arrival), behind(hanging_[member].open, arrival)}, limit_);
-      hanging_[member] = {};
+      plain.push_back(arrival);
     }
   }
   std::sort(plain.begin(), plain.end());
@@ -174,111 +222,95 @@ void ArrivalBound::close_block(NodeId root, const std::vector<NodeId>& members) 
     if (sums.back() + cost > limit_) break;
     sums.push_back(sums.back() + cost);
   }
-  add_beside(block, {sums, sums}, limit_);
-  const double back = cheapest_arrival(root);
-  for (std::size_t k = 1; k < block.closed.size(); ++k) block.closed[k] += back;
-  add_beside(hanging_[root], block, limit_);
+  add_beside(whole, {sums, sums});
+  for (std::size_t k = 1; k < whole.closed.size(); ++k) whole.closed[k] += tree_.back[block];
+  // A walk that must end elsewhere comes back.
+  if (!task_.ends_anywhere() && !tree_.holds_end[block]) whole.open = whole.closed;
+  std::unique_ptr<Branch>& beside = hanging_[tree_.blocks.root(block)];
+  if (beside) {
+    add_beside(*beside, whole);
+  } else if (whole.open.size() > 1) {
+    beside = std::make_unique<Branch>(std::move(whole));
+  }
 }
 
-// How many nodes of a bipartite graph `steps` steps can visit at most; all of them where it is not bipartite.
-int colour_bound(const Graph& graph, const Graph& back, const std::vector<NodeId>& reached, double steps) {
-  std::vector<int> colour(graph.node_count(), -1);
-  std::vector<bool> in_reach(graph.node_count());
-  for (const NodeId node : reached) in_reach[node] = true;
-  colour[reached.front()] = 0;
-  std::vector<NodeId> queue = {reached.front()};
-  std::int64_t counts[2] = {0, 0};
+// What a walk of so many steps can be worth at most in a bipartite graph; kNever where it is not bipartite.
+double colour_bound(const Task& task, const Reach& reach, double steps) {
+  std::vector<std::int8_t> colour(task.view.node_count(), -1);
+  const Graph& graph = task.view.both_ways();
+  colour[task.start] = 0;
+  std::vector<NodeId> queue = {task.start};
+  std::vector<double> prizes[2];
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const NodeId node = queue[head];
-    ++counts[colour[node]];
-    for (const Graph* const edges : {&graph, &back}) {
-      for (const NodeId next : edges->neighbours(node)) {
-        if (!in_reach[next]) continue;
-        if (colour[next] == colour[node]) return static_cast<int>(reached.size());
-        if (colour[next] >= 0) continue;
-        colour[next] = 1 - colour[node];
-        queue.push_back(next);
-      }
+    prizes[colour[node]].push_back(reach.prizes[node]);
+    for (const NodeId next : graph.neighbours(node)) {
+      if (!reach.contains[next]) continue;
+      if (colour[next] == colour[node]) return kNever;
+      if (colour[next] >= 0) continue;
+      colour[next] = static_cast<std::int8_t>(1 - colour[node]);
+      queue.push_back(next);
     }
   }
   const auto positions = static_cast<std::int64_t>(std::min(steps, 4e18)) + 1;
-  return static_cast<int>(std::min(counts[0], (positions + 1) / 2) + std::min(counts[1], positions / 2));
+  const auto best = [](std::vector<double>& of, std::int64_t count) {
+    if (count < std::ssize(of)) {
+      std::nth_element(of.begin(), of.begin() + count, of.end(), std::greater<>());
+      of.resize(static_cast<std::size_t>(count));
+    }
+    double sum = 0;
+    for (const double prize : of) sum += prize;
+    return sum;
+  };
+  return best(prizes[0], (positions + 1) / 2) + best(prizes[1], positions / 2);
 }
 
-// The most nodes on a way through the strongly connected parts of a directed graph.
-int order_bound(const Graph& graph, const Graph& back, const std::vector<NodeId>& reached) {
-  // Kosaraju's algorithm: nodes by the time a depth-first search leaves them, then the parts by searches backwards.
-  std::vector<bool> seen(graph.node_count());
-  std::vector<NodeId> finished;
-  struct Frame {
-    NodeId node;
-    std::size_t next = 0;
-  };
-  std::vector<Frame> stack = {{reached.front()}};
-  seen[reached.front()] = true;
-  while (!stack.empty()) {
-    Frame& frame = stack.back();
-    const auto neighbours = graph.neighbours(frame.node);
-    if (frame.next == neighbours.size()) {
-      finished.push_back(frame.node);
-      stack.pop_back();
-      continue;
-    }
-    const NodeId next = neighbours[frame.next++];
-    if (seen[next]) continue;
-    seen[next] = true;
-    stack.push_back({next});
+// The best way through the strongly connected components of a directed graph.
+double order_bound(const Task& task, const Reach& reach) {
+  const Graph& open = task.view.open();
+  const std::vector<int> component = strong_components(open, task.view.into(), task.start, reach.contains);
+  const int count = 1 + *std::max_element(component.begin(), component.end());
+  std::vector<std::vector<NodeId>> members(count);
+  for (const NodeId node : reach.nodes) {
+    if (component[node] >= 0) members[component[node]].push_back(node);
   }
-  std::vector<int> component(graph.node_count(), -1);
-  std::vector<int> most;  // nodes on the best way from the start to the end of a part; parts come in order
-  for (auto root = finished.rbegin(); root != finished.rend(); ++root) {
-    if (component[*root] >= 0) continue;
-    const int index = static_cast<int>(most.size());
-    int size = 0;
-    int before = 0;
-    std::vector<NodeId> members = {*root};
-    component[*root] = index;
-    while (!members.empty()) {
-      const NodeId node = members.back();
-      members.pop_back();
-      ++size;
-      for (const NodeId from : back.neighbours(node)) {
-        if (!seen[from]) continue;
-        if (component[from] < 0) {
-          component[from] = index;
-          members.push_back(from);
-        } else if (component[from] != index) {
-          before = std::max(before, most[component[from]]);
-        }
+  std::vector<double> best(count, 0.0);  // of ways that end in a component, without what it is worth itself
+  double most = 0;
+  for (int c = 0; c < count; ++c) {
+    double here = best[c];
+    for (const NodeId node : members[c]) here += reach.prizes[node];
+    most = std::max(most, here);
+    for (const NodeId node : members[c]) {
+      for (const NodeId next : open.neighbours(node)) {
+        const int other = component[next];
+        if (other > c) best[other] = std::max(best[other], here);
       }
     }
-    most.push_back(before + size);
   }
-  return *std::max_element(most.begin(), most.end());
-}
-
-double cheapest_edge(const Graph& graph) {
-  double least = kNever;
-  for (const Edge& edge : graph.edges()) least = std::min(least, edge.cost);
-  return least;
+  return most;
 }
 
 }  // namespace
 
-int max_visited(const SearchStart& start) {
-  const Graph& open = start.world->open();
-  const Graph back = open.reversed();
-  ArrivalBound arrivals(open, back, start.position, start.limit());
-  int most = 1 + arrivals.most_visited();
-  const double steps = open.edge_count() == 0 ? 0 : std::floor(start.limit() / cheapest_edge(open) * (1 + 1e-12));
-  most = std::min(most, colour_bound(open, back, arrivals.reached(), steps));
-  if (open.directed()) most = std::min(most, order_bound(open, back, arrivals.reached()));
-  // Where the walk began before: its nodes count again at worst, but nothing counts that is neither visited nor
-  // reached.
-  const auto visited_before = static_cast<int>(std::count(start.visited.begin(), start.visited.end(), true)) - 1;
-  std::vector<bool> possible = start.visited;
-  for (const NodeId node : arrivals.reached()) possible[node] = true;
-  return std::min(most + visited_before, static_cast<int>(std::count(possible.begin(), possible.end(), true)));
+double max_prize(const Task& task, Deadline deadline) {
+  check(task);
+  const Graph& open = task.view.open();
+  const Reach reach(task);
+  double most = 0;
+  for (const NodeId node : reach.nodes) most += reach.prizes[node];
+  const double steps = open.min_cost() > 0 ? std::floor(task.limit() / open.min_cost() * (1 + 1e-12)) : kNever;
+  most = std::min(most, colour_bound(task, reach, steps));
+  if (open.directed()) most = std::min(most, order_bound(task, reach));
+  if (passed(deadline)) return most;
+  const ArrivalTree tree(task, reach);
+  most = std::min(most, fractional_bound(task, reach, tree));
+  if (task.view.has_prizes()) return most;
+  most = std::floor(most + 1e-9);
+  if (passed(deadline)) return most;
+  if (const auto nodes = Knapsack(task, tree, deadline).most_visited()) {
+    most = std::min(most, *nodes + reach.prizes[task.start]);  // what was visited before counts again at worst
+  }
+  return most;
 }
 
 }  // namespace graphdrl

@@ -10,19 +10,19 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "graphdrl/planners/beam.h"
+#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 namespace {
 
-using NodeSet = std::uint64_t;  // by local index
+using NodeSet64 = std::uint64_t;  // of nodes in reach, by local index
 
-constexpr NodeSet bit(int node) {
-  return NodeSet{1} << node;
+constexpr NodeSet64 bit(int node) {
+  return NodeSet64{1} << node;
 }
 
 struct State {
-  NodeSet visited;
+  NodeSet64 visited;
   int position;
   friend bool operator==(const State&, const State&) = default;
 };
@@ -42,53 +42,62 @@ struct Optimum {
 
 // The part of a world in reach of a start, its nodes numbered in ascending order of id.
 struct Reach {
-  explicit Reach(const SearchStart& start);
+  explicit Reach(const Task& task);
+  bool fits() const { return !neighbours.empty(); }
 
-  std::vector<NodeId> nodes;               // by local index
-  std::vector<NodeSet> neighbours;         // likewise; empty where there are too many nodes
-  std::vector<std::vector<double>> costs;  // [from][to], meaningful along edges; of weighted worlds only
+  std::vector<NodeId> nodes;               // by local index; some of them where there are too many
+  std::vector<NodeSet64> neighbours;       // likewise; empty where there are too many nodes
+  std::vector<std::vector<double>> costs;  // [from][to], meaningful along edges
+  std::vector<double> prizes;              // of first visits
+  std::vector<double> cost_to_end;         // by any way; 0 where the walk may end anywhere
   State state{};                           // at the start
+  int end = -1;                            // -1 for anywhere
 };
 
-Reach::Reach(const SearchStart& start) {
-  const Graph& open = start.world->open();
-  nodes = {start.position};
-  std::vector<int> local(open.node_count(), -1);
-  local[start.position] = 0;
-  for (std::size_t head = 0; head < nodes.size(); ++head) {
-    for (const NodeId next : open.neighbours(nodes[head])) {
-      if (local[next] >= 0) continue;
-      local[next] = 0;
-      nodes.push_back(next);
-    }
-  }
+Reach::Reach(const Task& task) {
+  const Graph& open = task.view.open();
+  nodes = {task.start};
+  NearestFirst().run(open, task.start, task.limit(), [&](NodeId node, double) {
+    nodes.push_back(node);
+    return nodes.size() > kExactMaxNodes ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+  });
   if (nodes.size() > kExactMaxNodes) return;
   std::sort(nodes.begin(), nodes.end());
-  for (std::size_t i = 0; i < nodes.size(); ++i) local[nodes[i]] = static_cast<int>(i);
+  const auto local = [&](NodeId node) {
+    const auto place = std::lower_bound(nodes.begin(), nodes.end(), node);
+    return place == nodes.end() || *place != node ? -1 : static_cast<int>(place - nodes.begin());
+  };
   neighbours.resize(nodes.size());
-  if (open.weighted()) costs.assign(nodes.size(), std::vector<double>(nodes.size()));
+  costs.assign(nodes.size(), std::vector<double>(nodes.size()));
+  const std::vector<double> to_end =
+      task.ends_anywhere() ? std::vector<double>() : costs_to(task.view.into(), task.end);
+  const graphdrl::NodeSet visited = task.visited_before();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     for (int k = 0; k < open.degree(nodes[i]); ++k) {
-      const int next = local[open.neighbours(nodes[i])[k]];
+      const int next = local(open.neighbours(nodes[i])[k]);
+      if (next < 0) continue;  // beyond the budget
       neighbours[i] |= bit(next);
-      if (open.weighted()) costs[i][next] = open.cost(nodes[i], k);
+      costs[i][next] = open.cost(nodes[i], k);
     }
-    if (start.visited[nodes[i]]) state.visited |= bit(static_cast<int>(i));
+    prizes.push_back(task.view.prize(nodes[i]));
+    cost_to_end.push_back(to_end.empty() ? 0 : to_end[nodes[i]]);
+    if (visited.contains(nodes[i])) state.visited |= bit(static_cast<int>(i));
   }
-  state.position = local[start.position];
+  state.position = local(task.start);
+  end = task.ends_anywhere() ? -1 : local(task.end);
 }
 
-// Where every edge costs 1.
+// Where every edge costs 1, every prize is 1 and the walk may end anywhere.
 class ExactSearch {
  public:
-  explicit ExactSearch(const SearchStart& start, Deadline deadline = {}) : deadline_(deadline) {
-    Reach reach(start);
+  explicit ExactSearch(const Task& task, Deadline deadline = {}) : deadline_(deadline) {
+    Reach reach(task);
+    fits_ = reach.fits();
     nodes_ = std::move(reach.nodes);
     neighbours_ = std::move(reach.neighbours);
     start_ = reach.state;
-    fits_ = !neighbours_.empty();
     unvisited_ = static_cast<int>(nodes_.size()) - std::popcount(start_.visited);
-    budget_ = static_cast<int>(std::min(start.limit(), 1e9));
+    budget_ = static_cast<int>(std::min(task.limit(), 1e9));
   }
 
   std::optional<Optimum> optimum() const;
@@ -108,8 +117,8 @@ class ExactSearch {
   bool can_reach(const State& state, int gain, int slack);
 
   Deadline deadline_;
-  std::vector<NodeId> nodes_;        // by local index
-  std::vector<NodeSet> neighbours_;  // likewise
+  std::vector<NodeId> nodes_;          // by local index
+  std::vector<NodeSet64> neighbours_;  // likewise
   State start_{};
   int unvisited_ = 0;
   int budget_ = 0;
@@ -122,14 +131,14 @@ class ExactSearch {
 // steps through visited ground, nearest first.
 template <typename Visit>
 void ExactSearch::for_first_visits(const State& state, int max_distance, const Visit& visit) const {
-  NodeSet seen = bit(state.position);
-  NodeSet frontier = seen;
+  NodeSet64 seen = bit(state.position);
+  NodeSet64 frontier = seen;
   for (int distance = 1; frontier != 0 && distance <= max_distance; ++distance) {
-    NodeSet next = 0;
+    NodeSet64 next = 0;
     for (; frontier != 0; frontier &= frontier - 1) next |= neighbours_[std::countr_zero(frontier)];
     next &= ~seen;
     seen |= next;
-    for (NodeSet fresh = next & ~state.visited; fresh != 0; fresh &= fresh - 1) {
+    for (NodeSet64 fresh = next & ~state.visited; fresh != 0; fresh &= fresh - 1) {
       visit(std::countr_zero(fresh), distance);
     }
     frontier = next & state.visited;
@@ -185,7 +194,7 @@ std::optional<std::vector<NodeId>> ExactSearch::walk() {
   while (gain_of(state) < best->gain) {
     // The lowest neighbour from which the optimum is still in reach: the lexicographically first walk.
     bool moved = false;
-    for (NodeSet next = neighbours_[state.position]; next != 0 && !moved; next &= next - 1) {
+    for (NodeSet64 next = neighbours_[state.position]; next != 0 && !moved; next &= next - 1) {
       const int node = std::countr_zero(next);
       const bool first_visit = (state.visited & bit(node)) == 0;
       const State after{state.visited | bit(node), node};
@@ -201,62 +210,85 @@ std::optional<std::vector<NodeId>> ExactSearch::walk() {
   return walk;
 }
 
-// Where edges have costs. States are expanded in order of what they can reach at most: the nodes visited, and as many
-// of the others as their cheapest arrivals allow.
-class WeightedSearch {
+// Where edges have costs, nodes prizes, or the walk must end somewhere. States are expanded in order of what they can
+// be worth at most: what was visited, and as much of the rest as its cheapest arrivals allow.
+class GeneralSearch {
  public:
-  explicit WeightedSearch(const SearchStart& start, Deadline deadline = {})
-      : deadline_(deadline), reach_(start), limit_(start.limit()) {
-    if (reach_.neighbours.empty()) return;
-    const int count = static_cast<int>(reach_.nodes.size());
-    for (int node = 0; node < count; ++node) {
-      double least = std::numeric_limits<double>::infinity();
-      for (int from = 0; from < count; ++from) {
-        if ((reach_.neighbours[from] & bit(node)) != 0) least = std::min(least, reach_.costs[from][node]);
-      }
-      arrivals_.emplace_back(least, node);
-    }
-    std::sort(arrivals_.begin(), arrivals_.end());
-  }
+  explicit GeneralSearch(const Task& task, Deadline deadline = {});
 
+  // The best walk; empty where it is out of reach, or late.
   std::optional<std::vector<NodeId>> walk();
 
  private:
   struct Entry {
     State state;
     double spent;
-    int gain;
-    int most;    // first visits in all, at most
-    int before;  // the entry it was reached from
+    double prize;  // of first visits
+    double most;   // of all first visits, at most
+    int before;    // the entry it was reached from
+  };
+  struct Arrival {
+    double cost;  // of the cheapest edge into the node
+    double prize;
+    int node;
   };
 
-  int most_from(const State& state, int gain, double spent) const {
-    for (const auto& [cost, node] : arrivals_) {
-      if ((state.visited & bit(node)) != 0) continue;
-      spent += cost;
-      if (spent > limit_) break;
-      ++gain;
-    }
-    return gain;
-  }
+  double most_from(const State& state, double prize, double spent) const;
 
   // The order of the heap: the most first, then the deepest, then the cheapest.
-  static bool comes_later(const Entry& a, const Entry& b) {
-    if (a.most != b.most) return a.most < b.most;
-    return a.gain != b.gain ? a.gain < b.gain : a.spent > b.spent;
+  bool comes_later(int a, int b) const {
+    const Entry& one = entries_[a];
+    const Entry& other = entries_[b];
+    if (one.most != other.most) return one.most < other.most;
+    return one.prize != other.prize ? one.prize < other.prize : one.spent > other.spent;
   }
 
+  int pop();
+  void push(const Entry& entry);
   void expand(int index);
+  double cost_to_the_end(const Entry& entry) const;
   std::vector<NodeId> unroll(int index) const;
 
   Deadline deadline_;
   Reach reach_;
   double limit_;
-  std::vector<std::pair<double, int>> arrivals_;  // the cheapest edge into each node, cheapest first
+  bool unit_prizes_;
+  std::vector<Arrival> arrivals_;  // by cost per prize
   std::vector<Entry> entries_;
   std::vector<int> heap_;
   std::unordered_map<State, double, StateHash> least_spent_;
 };
+
+GeneralSearch::GeneralSearch(const Task& task, Deadline deadline)
+    : deadline_(deadline), reach_(task), limit_(task.limit()), unit_prizes_(!task.view.has_prizes()) {
+  if (!reach_.fits()) return;
+  const int count = static_cast<int>(reach_.nodes.size());
+  for (int node = 0; node < count; ++node) {
+    double least = kNoLimit;
+    for (int from = 0; from < count; ++from) {
+      if ((reach_.neighbours[from] & bit(node)) != 0) least = std::min(least, reach_.costs[from][node]);
+    }
+    if (reach_.prizes[node] > 0) arrivals_.push_back({least, reach_.prizes[node], node});
+  }
+  std::sort(arrivals_.begin(), arrivals_.end(), [](const Arrival& a, const Arrival& b) {
+    const double one = a.cost / a.prize;
+    const double other = b.cost / b.prize;
+    return one != other ? one < other : a.node < b.node;
+  });
+}
+
+// With unit prizes whole nodes, else the last one in part.
+double GeneralSearch::most_from(const State& state, double prize, double spent) const {
+  for (const Arrival& arrival : arrivals_) {
+    if ((state.visited & bit(arrival.node)) != 0) continue;
+    if (spent + arrival.cost > limit_) {
+      return unit_prizes_ ? prize : prize + arrival.prize * (limit_ - spent) / arrival.cost;
+    }
+    spent += arrival.cost;
+    prize += arrival.prize;
+  }
+  return prize;
+}
 
 // Shortest paths through visited ground from one of its nodes to all: Dijkstra's algorithm without a heap, for few
 // nodes.
@@ -267,19 +299,19 @@ struct ShortestPaths {
 
 ShortestPaths shortest_paths(const Reach& reach, const State& state) {
   ShortestPaths paths;
-  paths.cost.fill(std::numeric_limits<double>::infinity());
+  paths.cost.fill(kNoLimit);
   paths.cost[state.position] = 0;
   paths.before[state.position] = state.position;
-  NodeSet settled = 0;
+  NodeSet64 settled = 0;
   for (;;) {
     int node = -1;
-    for (NodeSet rest = state.visited & ~settled; rest != 0; rest &= rest - 1) {
+    for (NodeSet64 rest = state.visited & ~settled; rest != 0; rest &= rest - 1) {
       const int other = std::countr_zero(rest);
       if (node < 0 || paths.cost[other] < paths.cost[node]) node = other;
     }
-    if (node < 0 || paths.cost[node] == std::numeric_limits<double>::infinity()) return paths;
+    if (node < 0 || paths.cost[node] == kNoLimit) return paths;
     settled |= bit(node);
-    for (NodeSet next = reach.neighbours[node] & ~settled; next != 0; next &= next - 1) {
+    for (NodeSet64 next = reach.neighbours[node] & ~settled; next != 0; next &= next - 1) {
       const int other = std::countr_zero(next);
       const double cost = paths.cost[node] + reach.costs[node][other];
       if (cost >= paths.cost[other]) continue;
@@ -289,100 +321,148 @@ ShortestPaths shortest_paths(const Reach& reach, const State& state) {
   }
 }
 
-void WeightedSearch::expand(int index) {
+void append_path(const Reach& reach, const ShortestPaths& paths, int from, int to, std::vector<NodeId>& walk) {
+  const auto first = std::ssize(walk);
+  for (int node = to; node != from; node = paths.before[node]) walk.push_back(reach.nodes[node]);
+  std::reverse(walk.begin() + first, walk.end());
+}
+
+// What it costs to end where the walk must; kNoLimit where it is not there yet.
+double GeneralSearch::cost_to_the_end(const Entry& entry) const {
+  if (reach_.end < 0 || reach_.end == entry.state.position) return 0;
+  if ((entry.state.visited & bit(reach_.end)) == 0) return kNoLimit;
+  return shortest_paths(reach_, entry.state).cost[reach_.end];
+}
+
+void GeneralSearch::push(const Entry& entry) {
+  heap_.push_back(static_cast<int>(entries_.size()));
+  entries_.push_back(entry);
+  std::push_heap(heap_.begin(), heap_.end(), [&](int a, int b) { return comes_later(a, b); });
+}
+
+int GeneralSearch::pop() {
+  std::pop_heap(heap_.begin(), heap_.end(), [&](int a, int b) { return comes_later(a, b); });
+  const int index = heap_.back();
+  heap_.pop_back();
+  return index;
+}
+
+void GeneralSearch::expand(int index) {
   const Entry from = entries_[index];
   const ShortestPaths paths = shortest_paths(reach_, from.state);
   for (int node = 0; node < std::ssize(reach_.nodes); ++node) {
-    if ((from.state.visited & bit(node)) != 0 || from.spent + paths.cost[node] > limit_) continue;
+    if ((from.state.visited & bit(node)) != 0) continue;
+    if (from.spent + paths.cost[node] + reach_.cost_to_end[node] > limit_) continue;
     Entry entry{.state = {from.state.visited | bit(node), node},
                 .spent = from.spent + paths.cost[node],
-                .gain = from.gain + 1,
+                .prize = from.prize + reach_.prizes[node],
                 .most = 0,
                 .before = index};
     const auto [known, fresh] = least_spent_.try_emplace(entry.state, entry.spent);
     if (!fresh && known->second <= entry.spent) continue;
     known->second = entry.spent;
-    entry.most = most_from(entry.state, entry.gain, entry.spent);
-    heap_.push_back(static_cast<int>(entries_.size()));
-    entries_.push_back(entry);
-    std::push_heap(heap_.begin(), heap_.end(), [&](int a, int b) { return comes_later(entries_[a], entries_[b]); });
+    entry.most = most_from(entry.state, entry.prize, entry.spent);
+    push(entry);
   }
 }
 
-std::optional<std::vector<NodeId>> WeightedSearch::walk() {
-  if (reach_.neighbours.empty()) return std::nullopt;
-  entries_ = {{.state = reach_.state, .spent = 0, .gain = 0, .most = most_from(reach_.state, 0, 0), .before = -1}};
-  heap_ = {0};
-  int best = 0;
+std::optional<std::vector<NodeId>> GeneralSearch::walk() {
+  if (!reach_.fits()) return std::nullopt;
+  push({.state = reach_.state, .spent = 0, .prize = 0, .most = most_from(reach_.state, 0, 0), .before = -1});
+  int best = -1;
+  double best_cost = kNoLimit;
+  // Whether a walk of this prize and cost would be better than the best so far.
+  const auto beats = [&](double prize, double cost) {
+    if (best < 0) return true;
+    return prize > entries_[best].prize || (prize == entries_[best].prize && cost < best_cost);
+  };
   while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end(), [&](int a, int b) { return comes_later(entries_[a], entries_[b]); });
-    const int index = heap_.back();
-    heap_.pop_back();
-    const Entry& entry = entries_[index];
-    const auto beats = [&](int gain) {
-      return gain > entries_[best].gain || (gain == entries_[best].gain && entry.spent < entries_[best].spent);
-    };
-    if (entry.most < entries_[best].gain) break;  // nothing left in the heap can have more
+    const int index = pop();
+    const Entry entry = entries_[index];
+    if (best >= 0 && entry.most < entries_[best].prize) break;  // nothing left in the heap can be worth more
     const auto known = least_spent_.find(entry.state);
     if (known != least_spent_.end() && known->second < entry.spent) continue;
-    if (beats(entry.gain)) best = index;
-    if (!beats(entry.most)) continue;
+    const double cost = entry.spent + cost_to_the_end(entry);
+    if (cost <= limit_ && beats(entry.prize, cost)) {
+      best = index;
+      best_cost = cost;
+    }
+    if (!beats(entry.most, entry.spent + reach_.cost_to_end[entry.state.position])) continue;
     expand(index);
     if (entries_.size() > kExactMaxStates || passed(deadline_)) return std::nullopt;
   }
+  if (best < 0) return std::nullopt;
   return unroll(best);
 }
 
-std::vector<NodeId> WeightedSearch::unroll(int index) const {
+std::vector<NodeId> GeneralSearch::unroll(int index) const {
   std::vector<int> chain;
-  for (; index > 0; index = entries_[index].before) chain.push_back(index);
+  for (int i = index; i > 0; i = entries_[i].before) chain.push_back(i);
   std::reverse(chain.begin(), chain.end());
   std::vector<NodeId> walk = {reach_.nodes[reach_.state.position]};
   for (const int next : chain) {
     const Entry& from = entries_[entries_[next].before];
-    const ShortestPaths paths = shortest_paths(reach_, from.state);
-    std::vector<NodeId> steps;
-    for (int node = entries_[next].state.position; node != from.state.position; node = paths.before[node]) {
-      steps.push_back(reach_.nodes[node]);
-    }
-    walk.insert(walk.end(), steps.rbegin(), steps.rend());
+    append_path(reach_, shortest_paths(reach_, from.state), from.state.position, entries_[next].state.position, walk);
   }
+  const Entry& last = entries_[index];
+  if (reach_.end >= 0) {
+    append_path(reach_, shortest_paths(reach_, last.state), last.state.position, reach_.end, walk);
+  }
+  return walk;
+}
+
+bool is_plain(const Task& task) {
+  return task.ends_anywhere() && !task.view.has_prizes() && !task.view.open().weighted();
+}
+
+// The walk that goes straight to where it must end.
+std::vector<NodeId> straight_walk(const Task& task) {
+  std::vector<NodeId> walk = {task.start};
+  if (task.ends_anywhere() || task.end == task.start) return walk;
+  NearestFirst search;
+  search.run(task.view.open(), task.start, kNoLimit, [&](NodeId node, double) {
+    return node == task.end ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+  });
+  search.append_path_to(task.end, walk);
   return walk;
 }
 
 }  // namespace
 
-std::optional<int> exact_gain(const SearchStart& start) {
-  if (start.world->open().weighted()) {
-    const auto walk = WeightedSearch(start).walk();
-    if (!walk) return std::nullopt;
-    std::vector<bool> visited = start.visited;
-    int gain = 0;
-    for (const NodeId node : *walk) {
-      gain += !visited[node];
-      visited[node] = true;
-    }
-    return gain;
+std::optional<double> exact_prize(const Task& task) {
+  if (is_plain(task)) {
+    const auto best = ExactSearch(task).optimum();
+    return best ? std::optional(best->gain + (task.visited.empty() ? 1.0 : 0.0)) : std::nullopt;
   }
-  const auto best = ExactSearch(start).optimum();
-  return best ? std::optional(best->gain) : std::nullopt;
+  auto walk = GeneralSearch(task).walk();
+  return walk ? std::optional(plan_of_walk(task, *std::move(walk)).prize) : std::nullopt;
 }
 
-std::optional<std::vector<NodeId>> exact_walk(const SearchStart& start, Deadline deadline) {
-  return start.world->open().weighted() ? WeightedSearch(start, deadline).walk() : ExactSearch(start, deadline).walk();
+std::optional<std::vector<NodeId>> exact_walk(const Task& task, Deadline deadline) {
+  return is_plain(task) ? ExactSearch(task, deadline).walk() : GeneralSearch(task, deadline).walk();
 }
 
-Plan ExactPolicy::plan(const SearchStart& start) {
-  const Deadline deadline = deadline_after(limit_);
-  Plan plan;
-  if (limit_) plan = BeamPolicy({}).plan(start);
-  if (auto walk = exact_walk(start, deadline)) return {.walk = *std::move(walk), .optimal = true};
-  if (limit_) return plan;
+Plan ExactPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
+  check(task);
+  Plan fallback;
+  if (deadline) {
+    fallback = plan_of_walk(task, straight_walk(task));
+    if (fallback_ != nullptr && task.ends_anywhere() && !task.view.has_prizes()) {
+      const auto now = std::chrono::steady_clock::now();
+      fallback = fallback_->plan(task, now + (*deadline - now) / 2, report);
+    }
+    if (fallback.optimal) return fallback;
+  }
+  if (auto walk = exact_walk(task, deadline)) return plan_of_walk(task, *std::move(walk), /*optimal=*/true);
+  if (deadline) return fallback;
+  const std::size_t reached = Reach(task).nodes.size();
+  const bool many = reached > kExactMaxNodes;
   throw SearchOutOfReach(
       {.what = "exact search is out of reach",
        .expected = fmt::format("at most {} nodes in reach and {} states", kExactMaxNodes, kExactMaxStates),
-       .got = fmt::format("{} valid nodes", start.world->valid_count()),
-       .where = start.world->name()});
+       .got =
+           many ? fmt::format("more than {} nodes", kExactMaxNodes) : fmt::format("{} nodes, too many states", reached),
+       .where = task.view.name()});
 }
 
 }  // namespace graphdrl

@@ -7,10 +7,12 @@
 // wasted w of a budget b can never gain more than b - w nodes, so the search ends as soon as what it has found cannot
 // be beaten. Among the optimal walks it returns the cheapest, and of these the lexicographically first.
 //
-// Where edges have costs, states are expanded in order of what they can gain at most, every node left at the cost of
-// its cheapest arrival. Among the optimal walks it returns the cheapest; of several such, always the same one.
+// Where edges have costs, nodes prizes, or the walk must end somewhere, states are expanded in order of what they can
+// be worth at most, every node left at the cost of its cheapest arrival. Among the optimal walks it returns the
+// cheapest; of several such, always the same one.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,7 +21,7 @@
 
 namespace graphdrl {
 
-inline constexpr int kExactMaxNodes = 64;                  // valid nodes in reach of the start: a set is one word
+inline constexpr int kExactMaxNodes = 64;                  // valid nodes that the budget reaches: a set is one word
 inline constexpr std::size_t kExactMaxStates = 2'000'000;  // then a search gives up
 
 class SearchOutOfReach : public Error {
@@ -27,23 +29,23 @@ class SearchOutOfReach : public Error {
   using Error::Error;
 };
 
-// How many nodes an optimal walk visits on top of those already visited. Empty where the search is out of reach: too
-// many nodes or too many states, never too much time, so that the answer is the same everywhere.
-std::optional<int> exact_gain(const SearchStart& start);
+// The prize of an optimal walk [Plan::prize]. Empty where the search is out of reach: too many nodes or too many
+// states, never too much time, so that the answer is the same everywhere.
+std::optional<double> exact_prize(const Task& task);
 
-// The optimal walk, `position` first. Empty where out of reach or past the deadline.
-std::optional<std::vector<NodeId>> exact_walk(const SearchStart& start, Deadline deadline = {});
+// The optimal walk. Empty where out of reach or past the deadline.
+std::optional<std::vector<NodeId>> exact_walk(const Task& task, Deadline deadline = {});
 
-// Throws SearchOutOfReach. With a time limit it first plans by a beam, and gives that walk where the search is out of
-// reach or the time up.
-class ExactPolicy final : public PlanPolicy {
+// Throws SearchOutOfReach. With a deadline, another planner has half the time first, and gives the walk where the
+// search is out of reach or the time up.
+class ExactPlanner final : public Planner {
  public:
-  explicit ExactPolicy(TimeLimit limit = {}) : limit_(limit) {}
+  explicit ExactPlanner(std::unique_ptr<Planner> fallback = nullptr) : fallback_(std::move(fallback)) {}
 
-  Plan plan(const SearchStart& start) override;
+  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
 
  private:
-  TimeLimit limit_;
+  std::unique_ptr<Planner> fallback_;
 };
 
 }  // namespace graphdrl

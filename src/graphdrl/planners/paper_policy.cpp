@@ -15,16 +15,17 @@ PaperPolicy::PaperPolicy(PaperParameters parameters) : parameters_(std::move(par
   network_.set_parameters(parameters_);
 }
 
-const PaperFeatureEncoder& PaperPolicy::encoder_for(const World& world) {
-  return encoders_.try_emplace(&world, world).first->second;
+const PaperFeatureEncoder& PaperPolicy::encoder_for(const View& view) {
+  if (!encoder_ || !(encoder_->view() == view)) encoder_.emplace(view);
+  return *encoder_;
 }
 
 void PaperPolicy::q_values(std::span<const Observation> observations, std::span<float> q) {
   while (!observations.empty()) {
     std::size_t count = 1;
-    std::int64_t nodes = observations[0].world->graph().node_count();
+    std::int64_t nodes = observations[0].view->graph().node_count();
     while (count < observations.size()) {
-      nodes += observations[count].world->graph().node_count();
+      nodes += observations[count].view->graph().node_count();
       if (nodes > kMaxBatchNodes) break;
       ++count;
     }
@@ -39,15 +40,15 @@ void PaperPolicy::q_values_of_block(std::span<const Observation> observations, s
   for (const Observation& observation : observations) {
     if (observation.action_space != ActionSpace::kDirections) {
       throw Error(
-          {.what = "the paper's network chooses directions, on grid maps only", .where = observation.world->name()});
+          {.what = "the paper's network chooses directions, on grid maps only", .where = observation.view->name()});
     }
-    batch_.add(observation.world->graph());
+    batch_.add(observation.view->graph());
   }
   features_.resize(static_cast<std::size_t>(batch_.node_count()) * kPaperFeatureCount);
   std::span<float> rest = features_;
   for (const Observation& observation : observations) {
-    const std::size_t size = static_cast<std::size_t>(observation.world->graph().node_count()) * kPaperFeatureCount;
-    encoder_for(*observation.world).encode(observation.position, observation.visits, rest.first(size));
+    const std::size_t size = static_cast<std::size_t>(observation.view->graph().node_count()) * kPaperFeatureCount;
+    encoder_for(*observation.view).encode(observation.position, observation.visits, rest.first(size));
     rest = rest.subspan(size);
   }
   network_.q_values(batch_, features_, q);

@@ -1,7 +1,7 @@
 // The trained Q-network of the paper as a policy.
 #pragma once
 
-#include <map>
+#include <optional>
 #include <vector>
 
 #include "graphdrl/env/policy.h"
@@ -22,14 +22,15 @@ class PaperPolicy final : public Policy {
   // q: [B, A], raw. Many or large observations are worked off in blocks, cut by size.
   void q_values(std::span<const Observation> observations, std::span<float> q);
 
-  const PaperFeatureEncoder& encoder_for(const World& world);
+  // Of the world seen last; another one takes its place.
+  const PaperFeatureEncoder& encoder_for(const View& view);
 
  private:
   void q_values_of_block(std::span<const Observation> observations, std::span<float> q);
 
   PaperParameters parameters_;
   PaperNetwork network_;
-  std::map<const World*, PaperFeatureEncoder> encoders_;
+  std::optional<PaperFeatureEncoder> encoder_;
   GraphBatch batch_;
   std::vector<float> features_;  // [N, F]
   std::vector<float> q_;         // [B, A]

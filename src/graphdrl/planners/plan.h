@@ -1,66 +1,89 @@
-// Planners that think out a whole walk before they take its first step.
+// Planners, which think out a whole walk before its first step is taken, and the plans they make.
 #pragma once
 
 #include <chrono>
-#include <map>
+#include <functional>
+#include <limits>
 #include <optional>
-#include <utility>
+#include <span>
 #include <vector>
 
-#include "graphdrl/planners/baselines.h"
+#include "graphdrl/env/task.h"
+#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 
-// Where a search begins.
-struct SearchStart {
-  const World* world;
-  NodeId position;
-  std::vector<bool> visited;  // [N], the position among them
-  double budget_left;         // in units of cost
-
-  double limit() const { return spending_limit(budget_left); }
-};
-
-SearchStart search_start(const World& world, NodeId start, double budget);
-
-struct Plan {
-  std::vector<NodeId> walk;  // the position first
-  bool optimal = false;      // proved so
-};
-
-// How long a planner may think about one plan; empty for as long as it takes.
-using TimeLimit = std::optional<std::chrono::duration<double>>;
+// When a planner must be done; empty where it may take as long as it takes.
 using Deadline = std::optional<std::chrono::steady_clock::time_point>;
+using TimeLimit = std::optional<std::chrono::duration<double>>;
 
 Deadline deadline_after(TimeLimit limit);
 inline bool passed(Deadline deadline) {
   return deadline && std::chrono::steady_clock::now() >= *deadline;
 }
 
-// Follows the walk that plan() gives and stops at its end; plans anew where someone else led the way.
-class PlanPolicy : public SingleEpisodePolicy {
- public:
-  virtual Plan plan(const SearchStart& start) = 0;
-
- private:
-  int act_on(const Observation& observation) final;
-
-  struct Remembered {
-    double budget;
-    std::vector<NodeId> walk;
-  };
-  std::map<std::pair<const World*, NodeId>, Remembered> plans_;  // the last one from each start
+struct Plan {
+  std::vector<NodeId> walk;  // every step, the start first
+  int visited = 0;           // valid nodes, those before the walk among them
+  double prize = 0;          // of the nodes first visited on the walk, and of its start where that is new
+  double cost = 0;
+  double bound = std::numeric_limits<double>::infinity();  // no walk has a higher prize
+  bool optimal = false;  // proved so: no walk has a higher prize, and none as high costs less
 };
 
-// Valid nodes visited after a walk, those before it among them.
-int visited_after(const SearchStart& start, std::span<const NodeId> walk);
+// Whether one plan is better: by prize, then by cost.
+bool better(const Plan& one, const Plan& other);
+
+// The better one; of two as good the one that is proved optimal, else the first.
+Plan better_of(Plan first, Plan second);
+
+// The plan that a walk is: what it visits, is worth and costs. A repeated node is a blocked move and costs 1. Cost:
+// O(steps). REQUIRES: every other step follows an edge.
+Plan plan_of_walk(const Task& task, std::vector<NodeId> walk, bool optimal = false);
+
+// How far a planner is. Told now and then while it works, on the thread that called it.
+struct PlanProgress {
+  double done;  // of the search under way, from 0 to 1
+  int visited;  // by the walk under way
+};
+using Report = std::function<void(const PlanProgress&)>;
+
+// Answers tasks. Keeps scratch memory: one thread at a time.
+class Planner {
+ public:
+  virtual ~Planner() = default;
+
+  // The best walk it finds. Once the deadline passes, the best walk so far, which ends where the task says; the walk of
+  // the start alone where there is nothing else. Throws Error on a task that it cannot answer.
+  virtual Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) = 0;
+};
 
 // The walk that makes these first visits one after the other, each by the cheapest way through visited ground.
-// REQUIRES: there is such a way.
-std::vector<NodeId> walk_through(const SearchStart& start, std::span<const NodeId> first_visits);
+// REQUIRES: there are such ways.
+std::vector<NodeId> walk_through(const Task& task, std::span<const NodeId> first_visits, NearestFirst& search);
 
-// What the steps of a walk cost; a repeated node is a blocked move and costs 1. REQUIRES: every other step follows an
-// edge.
-double walk_cost(const World& world, std::span<const NodeId> walk);
+// Throws Error: "NAME cannot plan for an end yet". For planners that know neither ends nor prizes.
+void require_plain_task(const Task& task, std::string_view planner);
+
+// Looks at the clock once in `every` units of work, and reports to whoever listens.
+class Ticker {
+ public:
+  Ticker(Deadline deadline, const Report& report, int every) : deadline_(deadline), report_(&report), every_(every) {}
+
+  // Whether the deadline has passed, after so many units of work. visited: by the walk under way, of `most` nodes.
+  bool tick(int visited, int most, int units = 1) {
+    done_ += units;
+    if (done_ < every_) return false;
+    done_ = 0;
+    if (*report_) (*report_)({.done = most > 0 ? static_cast<double>(visited) / most : 1, .visited = visited});
+    return passed(deadline_);
+  }
+
+ private:
+  Deadline deadline_;
+  const Report* report_;
+  int every_;
+  int done_ = 0;
+};
 
 }  // namespace graphdrl

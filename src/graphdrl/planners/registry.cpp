@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <optional>
 
@@ -13,22 +12,38 @@
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/exact.h"
-#include "graphdrl/planners/explorer_policy.h"
+#include "graphdrl/planners/explorer.h"
 #include "graphdrl/planners/paper_policy.h"
+#include "graphdrl/planners/planner_policy.h"
 
 namespace graphdrl {
 namespace {
 
-using Factory = std::function<std::unique_ptr<Policy>(std::uint64_t seed, TimeLimit limit)>;
+using PlannerFactory = std::unique_ptr<Planner> (*)();
+using PolicyFactory = std::unique_ptr<Policy> (*)(std::uint64_t seed);
 
-const std::map<std::string, Factory>& factories() {
-  static const std::map<std::string, Factory> table = {
-      {"random", [](std::uint64_t seed, TimeLimit) { return std::make_unique<RandomPolicy>(seed); }},
-      {"random-walk", [](std::uint64_t seed, TimeLimit) { return std::make_unique<RandomWalkPolicy>(seed); }},
-      {"dfs", [](std::uint64_t, TimeLimit) { return std::make_unique<DepthFirstPolicy>(); }},
-      {"nearest", [](std::uint64_t, TimeLimit) { return std::make_unique<NearestUnvisitedPolicy>(); }},
-      {"explorer", [](std::uint64_t, TimeLimit) { return std::make_unique<ExplorerPolicy>(builtin_explorer()); }},
-      {"exact", [](std::uint64_t, TimeLimit limit) { return std::make_unique<ExactPolicy>(limit); }},
+std::unique_ptr<Planner> make_explorer(SharedExplorer parameters) {
+  return std::make_unique<ExplorerPlanner>(std::make_shared<ExplorerScorer>(std::move(parameters)));
+}
+
+const std::map<std::string, PlannerFactory>& planners() {
+  static const std::map<std::string, PlannerFactory> table = {
+      {"dfs", []() -> std::unique_ptr<Planner> { return std::make_unique<DepthFirstPlanner>(); }},
+      {"nearest", []() -> std::unique_ptr<Planner> { return std::make_unique<NearestPlanner>(); }},
+      {"explorer", [] { return make_explorer(builtin_explorer()); }},
+      {"exact",
+       []() -> std::unique_ptr<Planner> {
+         return std::make_unique<ExactPlanner>(std::make_unique<BeamPlanner>(BeamOptions()));
+       }},
+  };
+  return table;
+}
+
+const std::map<std::string, PolicyFactory>& random_policies() {
+  static const std::map<std::string, PolicyFactory> table = {
+      {"random", [](std::uint64_t seed) -> std::unique_ptr<Policy> { return std::make_unique<RandomPolicy>(seed); }},
+      {"random-walk",
+       [](std::uint64_t seed) -> std::unique_ptr<Policy> { return std::make_unique<RandomWalkPolicy>(seed); }},
   };
   return table;
 }
@@ -63,40 +78,49 @@ std::optional<BeamName> parse_beam_name(std::string_view name) {
                .got = in_quotes(name, 200)});
 }
 
-std::unique_ptr<Policy> policy_of_file(const std::string& path) {
-  if (is_explorer_file(path)) return std::make_unique<ExplorerPolicy>(read_explorer_file(path));
-  return std::make_unique<PaperPolicy>(read_policy_file(path));
+std::unique_ptr<Planner> make_beam(const BeamName& name) {
+  const BeamOptions options{.width = name.width};
+  if (!name.guided) return std::make_unique<BeamPlanner>(options);
+  const auto scorer =
+      std::make_shared<ExplorerScorer>(name.file.empty() ? builtin_explorer() : read_explorer_file(name.file));
+  return std::make_unique<BeamPlanner>(options, scorer, std::make_unique<ExplorerPlanner>(scorer));
 }
 
 }  // namespace
 
-std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, TimeLimit limit) {
-  if (const auto beam = parse_beam_name(name)) {
-    const BeamOptions options{.width = beam->width};
-    if (!beam->guided) return std::make_unique<BeamPolicy>(options, limit);
-    const SharedExplorer guide = beam->file.empty() ? builtin_explorer() : read_explorer_file(beam->file);
-    return std::make_unique<BeamPolicy>(options, guide, limit);
-  }
-  if (limit && name != "exact") {
-    throw Error({.what = "a time limit is for policies that search",
-                 .expected = "beam[:W], guided[:W[:FILE]] or exact",
-                 .got = in_quotes(name, 200)});
-  }
-  const auto factory = factories().find(name);
-  if (factory != factories().end()) return factory->second(seed, limit);
+std::unique_ptr<Planner> make_planner(const std::string& name) {
+  if (const auto beam = parse_beam_name(name)) return make_beam(*beam);
+  if (const auto factory = planners().find(name); factory != planners().end()) return factory->second();
+  if (random_policies().contains(name)) return nullptr;
   std::error_code error;
-  if (std::filesystem::exists(name, error)) return policy_of_file(name);
-  throw Error({.what = "no such policy", .expected = policy_names(), .got = in_quotes(name, 200)});
+  if (!std::filesystem::exists(name, error)) {
+    throw Error({.what = "no such policy", .expected = policy_names(), .got = in_quotes(name, 200)});
+  }
+  return is_explorer_file(name) ? make_explorer(read_explorer_file(name)) : nullptr;
+}
+
+std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed) {
+  if (auto planner = make_planner(name)) return std::make_unique<PlannerPolicy>(std::move(planner));
+  if (const auto factory = random_policies().find(name); factory != random_policies().end()) {
+    return factory->second(seed);
+  }
+  return std::make_unique<PaperPolicy>(read_policy_file(name));
+}
+
+bool is_random(const std::string& name) {
+  return random_policies().contains(name);
 }
 
 std::string policy_names() {
   std::vector<std::string> names = {"beam[:W]", "guided[:W[:FILE]]"};
-  for (const auto& [name, unused] : factories()) names.push_back(name);
+  for (const auto& [name, unused] : planners()) names.push_back(name);
+  for (const auto& [name, unused] : random_policies()) names.push_back(name);
   return fmt::format("{} or a policy file", fmt::join(names, ", "));
 }
 
 std::string policy_label(const std::string& name) {
-  return factories().contains(name) || parse_beam_name(name) ? name : std::filesystem::path(name).stem().string();
+  const bool known = planners().contains(name) || random_policies().contains(name) || parse_beam_name(name);
+  return known ? name : std::filesystem::path(name).stem().string();
 }
 
 }  // namespace graphdrl

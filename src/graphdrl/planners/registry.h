@@ -11,10 +11,18 @@
 
 namespace graphdrl {
 
-// `random`, `random-walk`, `dfs`, `nearest`, `explorer`, `beam` or `beam:W`, `guided`, `guided:W` or `guided:W:FILE`,
-// `exact`, or a policy file. The time limit holds for each plan of a beam or an exact search. Throws Error on any other
-// name, on a file that holds no policy, and on a time limit for a policy that plans nothing.
-std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, TimeLimit limit = {});
+// Planners and policies: `dfs`, `nearest`, `explorer`, `beam` or `beam:W`, `guided`, `guided:W` or `guided:W:FILE`,
+// `exact`, and explorers in policy files, plan whole walks; `random`, `random-walk` and the paper's networks in policy
+// files choose step by step. Throw Error on any other name, and on a file that holds no policy.
+//
+// make_planner: null where the name is of one that chooses step by step.
+std::unique_ptr<Planner> make_planner(const std::string& name);
+
+// Whatever the name is of; planners are followed step by step.
+std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed);
+
+// Whether the choices of a policy depend on its seed.
+bool is_random(const std::string& name);
 
 // "beam[:W], guided[:W[:FILE]], dfs, exact, …, random-walk or a policy file", for help and errors.
 std::string policy_names();

@@ -119,7 +119,7 @@ double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rat
     batch_.clear();
     label_.clear();
     for (const Lesson* const lesson : lessons) {
-      lesson->append_to(batch_);
+      lesson->append_to(batch_, encoder_);
       label_.insert(label_.end(), lesson->shortfall.begin(), lesson->shortfall.end());
     }
   }
@@ -146,10 +146,10 @@ void ExplorerLearner::bootstrap_labels(std::span<const Lesson* const> lessons) {
   batch_.clear();
   next_.clear();
   for (const Lesson* const lesson : lessons) {
-    const FirstVisit choice = lesson->append_to(batch_)[lesson->choice];
+    const FirstVisit choice = lesson->append_to(batch_, encoder_)[lesson->choice];
     Lesson after = *lesson;
     visit(after, choice);
-    after.append_to(next_);
+    after.append_to(next_, encoder_);
   }
   const auto next_count = static_cast<std::size_t>(next_.visit_count());
   std::vector<float> online(next_count);

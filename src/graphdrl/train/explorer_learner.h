@@ -60,6 +60,7 @@ class ExplorerLearner {
   Adam adam_;
   ExplorerNetwork network_;
   ExplorerNetwork target_network_;
+  ExplorerEncoder encoder_;
   ExplorerBatch batch_;
   ExplorerBatch next_;
   std::vector<float> label_;      // [C]

@@ -43,10 +43,11 @@ class Unpacker {
   bool next(Lesson& lesson) {
     const std::size_t i = index_++;
     // Lessons of one walk share their world.
-    std::shared_ptr<LessonWorld>& at = worlds_[packed_.seed[i]];
+    std::shared_ptr<const LessonWorld>& at = worlds_[packed_.seed[i]];
     if (!at) at = std::make_shared<LessonWorld>(options_.world_of(packed_.seed[i]), packed_.seed[i]);
-    const NodeId nodes = at->world.graph().node_count();
-    const std::size_t words = words_for(nodes);
+    const NodeId nodes = at->world.node_count();
+    NodeSet visited(nodes);
+    const std::size_t words = visited.words().size();
     const std::int64_t labels = packed_.label_count[i];
     const std::int64_t position = packed_.position[i];
     if (position < 0 || position >= nodes || at->world.is_blocked(static_cast<NodeId>(position)) ||
@@ -56,9 +57,10 @@ class Unpacker {
       return false;
     }
     const auto first_word = packed_.visited.begin() + static_cast<std::ptrdiff_t>(visited_at_);
+    std::copy_n(first_word, words, visited.words().begin());
     const auto first_label = packed_.label.begin() + static_cast<std::ptrdiff_t>(label_at_);
     lesson = {.at = at,
-              .visited = {first_word, first_word + static_cast<std::ptrdiff_t>(words)},
+              .visited = std::move(visited),
               .position = static_cast<NodeId>(position),
               .spendable = packed_.spendable[i],
               .scope = static_cast<int>(packed_.scope[i]),
@@ -67,7 +69,7 @@ class Unpacker {
     visited_at_ += words;
     label_at_ += static_cast<std::size_t>(labels);
     ExplorerBatch batch;
-    const auto visits = std::ssize(lesson.append_to(batch));
+    const auto visits = std::ssize(lesson.append_to(batch, encoder_));
     const bool labelled = options_.teacher_width > 0;
     return labels == (labelled ? visits : 0) && packed_.choice[i] >= 0 && packed_.choice[i] < visits;
   }
@@ -78,7 +80,8 @@ class Unpacker {
  private:
   const Packed& packed_;
   const LessonOptions& options_;
-  std::map<std::uint64_t, std::shared_ptr<LessonWorld>> worlds_;
+  std::map<std::uint64_t, std::shared_ptr<const LessonWorld>> worlds_;
+  ExplorerEncoder encoder_;
   std::size_t index_ = 0;
   std::size_t visited_at_ = 0;
   std::size_t label_at_ = 0;
@@ -103,7 +106,7 @@ void ExplorerReplay::save(CheckpointWriter& checkpoint) const {
     packed.choice.push_back(lesson.choice);
     packed.scope.push_back(lesson.scope);
     packed.spendable.push_back(lesson.spendable);
-    packed.visited.insert(packed.visited.end(), lesson.visited.begin(), lesson.visited.end());
+    packed.visited.insert(packed.visited.end(), lesson.visited.words().begin(), lesson.visited.words().end());
     packed.label_count.push_back(std::ssize(lesson.shortfall));
     packed.label.insert(packed.label.end(), lesson.shortfall.begin(), lesson.shortfall.end());
   }

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "graphdrl/planners/beam.h"
+#include "graphdrl/planners/explorer.h"
 
 namespace graphdrl {
 namespace {
@@ -21,30 +22,20 @@ constexpr int kChangeOfPenalties = 1;
 constexpr float kCostScale = 8;
 constexpr float kPenaltyScale = 4;
 
-SearchStart search_start_of(const Lesson& walk) {
-  SearchStart start{
-      .world = &walk.at->world, .position = walk.position, .visited = {}, .budget_left = std::max(0.0, walk.spendable)};
-  for (NodeId node = 0; node < walk.at->world.graph().node_count(); ++node) {
-    start.visited.push_back((walk.visited[node / 64] >> (node % 64) & 1) != 0);
-  }
-  return start;
-}
-
 // How many nodes a beam visits from here.
 int gain_by_search(const Lesson& walk, int width) {
-  const SearchStart start = search_start_of(walk);
-  const auto before = std::count(start.visited.begin(), start.visited.end(), true);
-  const Plan plan = *beam_plan(start, {.width = width, .branching = kTeacherBranching, .cut_ties = true});
-  return visited_after(start, plan.walk) - static_cast<int>(before);
+  const Task task = rest_of(walk);
+  const Plan plan = beam_plan(task, {.width = width, .branching = kTeacherBranching, .cut_ties = true});
+  return plan.visited - task.visited.count();
 }
 
 // The start of a random walk with `ratio` mean edges to spend for each valid node.
 Lesson begin_walk(const std::shared_ptr<LessonWorld>& at, NodeId start, double ratio) {
   const World& world = at->world;
   Lesson walk{.at = at,
-              .visited = std::vector<std::uint64_t>(words_for(world.graph().node_count())),
+              .visited = NodeSet(world.node_count()),
               .position = start,
-              .spendable = spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
+              .spendable = world.spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
               .scope = kExplorerScope,
               .choice = 0,
               .shortfall = {}};
@@ -96,13 +87,20 @@ std::size_t least_of(std::span<const float> shortfall) {
 }  // namespace
 
 void visit(Lesson& walk, const FirstVisit& first) {
-  walk.visited[first.node / 64] |= std::uint64_t{1} << (first.node % 64);
+  walk.visited.insert(first.node);
   walk.position = first.node;
   walk.spendable -= first.cost;
 }
 
+Task rest_of(const Lesson& walk) {
+  return {.view = walk.at->world,
+          .start = walk.position,
+          .budget = std::max(0.0, walk.spendable),
+          .visited = walk.visited};
+}
+
 LessonWorld::LessonWorld(const WorldSpec& spec, std::uint64_t of_seed)
-    : seed(of_seed), rng(of_seed), world(random_world(spec, rng)), encoder(world) {}
+    : seed(of_seed), rng(of_seed), world(random_world(spec, rng)) {}
 
 std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerParameters& parameters,
                                  std::uint64_t seed) {
@@ -111,7 +109,7 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
   Rng rng = at->rng;
   const auto chance = [&](double p) { return rng.uniform() < p; };
   // No ownership: the parameters stay the caller's.
-  ExplorerGuide guide(SharedExplorer(std::shared_ptr<void>(), &parameters));
+  ExplorerScorer scorer(SharedExplorer(std::shared_ptr<void>(), &parameters));
   const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
   const double ratio = options.least_budget + (options.most_budget - options.least_budget) * rng.uniform();
   Lesson walk = begin_walk(at, start, ratio);
@@ -127,7 +125,7 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
   std::vector<float> shortfall;
   for (;;) {
     batch.clear();
-    const auto visits = walk.append_to(batch);
+    const auto visits = walk.append_to(batch, scorer.encoder());
     if (visits.empty()) return lessons;
     Lesson lesson = walk;
     const bool kept = chance(share) && (visits.size() > 1 || options.teacher_width == 0);
@@ -137,7 +135,7 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
     if (chance(options.explore)) {
       choice = rng.below(static_cast<std::uint32_t>(visits.size()));
     } else if (by_network) {
-      guide.score(batch, shortfall);
+      scorer.shortfalls(batch, shortfall);
       choice = least_of(shortfall);
     } else {
       choice = taught ? least_of(lesson.shortfall) : best_by_rank(batch, visits.size());

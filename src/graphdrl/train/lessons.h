@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "graphdrl/env/task.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/nn/explorer_network.h"
 
@@ -36,18 +37,12 @@ struct LessonWorld {
   std::uint64_t seed;
   Rng rng;  // as the world left it: draws the walk
   World world;
-  ExplorerEncoder encoder;
 };
-
-// How many words hold a bit per node.
-inline std::size_t words_for(NodeId nodes) {
-  return (static_cast<std::size_t>(nodes) + 63) / 64;
-}
 
 // One state and what its first visits are worth. Small: features are built when it is used.
 struct Lesson {
-  std::shared_ptr<LessonWorld> at;
-  std::vector<std::uint64_t> visited;  // a bit per node
+  std::shared_ptr<const LessonWorld> at;
+  NodeSet visited;
   NodeId position;
   double spendable;
   int scope;                     // nodes the network looks at
@@ -55,10 +50,15 @@ struct Lesson {
   std::vector<float> shortfall;  // by first visit; kUnlabelled for some where there are many, empty without a teacher
 
   // Appends the state; gives its first visits, until the encoder's next call.
-  std::span<const FirstVisit> append_to(ExplorerBatch& batch) const {
-    return at->encoder.append({visited.data(), position, spendable}, scope, batch);
+  std::span<const FirstVisit> append_to(ExplorerBatch& batch, ExplorerEncoder& encoder) const {
+    const ExplorationState state{
+        .visited = visited, .visited_count = visited.count(), .position = position, .spendable = spendable};
+    return encoder.append(at->world, state, scope, batch);
   }
 };
+
+// What is left to do of the walk.
+Task rest_of(const Lesson& walk);
 
 // Goes on with a first visit.
 void visit(Lesson& walk, const FirstVisit& first);

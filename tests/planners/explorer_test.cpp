@@ -1,4 +1,4 @@
-#include "graphdrl/planners/explorer_policy.h"
+#include "graphdrl/planners/explorer.h"
 
 #include <gtest/gtest.h>
 
@@ -16,26 +16,24 @@ TEST(Explorer, GuidesABeamToMoreThanItFindsAlone) {
   int gain = 0;
   for (int index = 0; index < 30; ++index) {
     const World world = split_world({"loop-maze", 11}, Split::kValidation, index);
-    ExplorerGuide guide(builtin_explorer());
-    const SearchStart start = search_start(world, world.valid_nodes()[0], 1.25 * world.valid_count());
-    const auto visited = [&](ExplorerGuide* by) {
-      return visited_after(start, beam_plan(start, {.width = 16}, {}, by)->walk);
-    };
-    gain += visited(&guide) - visited(nullptr);
+    ExplorerScorer scorer(builtin_explorer());
+    const Task task{.view = world, .start = world.valid_nodes()[0], .budget = 1.25 * world.valid_count()};
+    gain += beam_plan(task, {.width = 16}, {}, &scorer).visited - beam_plan(task, {.width = 16}).visited;
   }
   EXPECT_GE(gain, 30);  // of some 2200 nodes
 }
 
 // The network alone, which was trained on budgets up to 1.7x, would stray.
 TEST(Explorer, VisitsAllWhereTheBudgetIsPlenty) {
+  ExplorerPlanner planner(std::make_shared<ExplorerScorer>(builtin_explorer()));
   for (const char* const family : {"loop-maze", "obstacles"}) {
     for (int index = 0; index < 5; ++index) {
       const World world = split_world({family, 11}, Split::kValidation, index);
       for (const double budget : {2.0, 20.0}) {
-        const SearchStart start = search_start(world, world.valid_nodes()[0], budget * world.valid_count());
-        const Plan plan = ExplorerPolicy(builtin_explorer()).plan(start);
-        EXPECT_EQ(visited_after(start, plan.walk), world.valid_count()) << family << " " << index << " " << budget;
-        EXPECT_LE(walk_cost(world, plan.walk), 2.0 * world.valid_count());
+        const Plan plan =
+            planner.plan({.view = world, .start = world.valid_nodes()[0], .budget = budget * world.valid_count()});
+        EXPECT_EQ(plan.visited, world.valid_count()) << family << " " << index << " " << budget;
+        EXPECT_LE(plan.cost, 2.0 * world.valid_count());
       }
     }
   }
@@ -46,7 +44,8 @@ TEST(Explorer, RefusesWeightsThatGiveNoNumbers) {
   auto parameters = std::make_shared<ExplorerParameters>(rng);
   for (float& value : parameters->values()) value *= 1e38f;
   const World world = grid_world("...\n...\n");
-  EXPECT_THROW(ExplorerPolicy(parameters).plan(search_start(world, 0, 9)), Error);
+  ExplorerPlanner planner(std::make_shared<ExplorerScorer>(parameters));
+  EXPECT_THROW(planner.plan({.view = world, .start = 0, .budget = 9}), Error);
 }
 
 struct Choices {
@@ -59,24 +58,26 @@ struct Choices {
 // Walks through a world, a third of the time at random.
 Choices compare_choices(const WorldSpec& spec) {
   const World world = split_world(spec, Split::kValidation, 0);
-  ExplorerGuide guide(builtin_explorer());
-  ExplorerEncoder& encoder = guide.encoder_for(world);
+  ExplorerScorer scorer(builtin_explorer());
   Rng rng(2);
-  std::vector<std::uint64_t> visited((static_cast<std::size_t>(world.graph().node_count()) + 63) / 64);
-  ExplorerState state{
-      .visited = visited.data(), .position = world.valid_nodes()[0], .spendable = 1.0 * world.valid_count()};
+  NodeSet visited(world.node_count());
+  ExplorationState state{.visited = visited,
+                         .visited_count = 0,
+                         .position = world.valid_nodes()[0],
+                         .spendable = 1.0 * world.valid_count()};
   ExplorerBatch batch;
   std::vector<float> shortfall;
   Choices result;
   for (int i = 0; i < 200; ++i) {
-    visited[state.position / 64] |= std::uint64_t{1} << (state.position % 64);
+    visited.insert(state.position);
+    ++state.visited_count;
     batch.clear();
-    const auto visits = encoder.append(state, kExplorerScope, batch);
+    const auto visits = scorer.encoder().append(world, state, kExplorerScope, batch);
     if (visits.empty()) break;
-    guide.score(batch, shortfall);
+    scorer.shortfalls(batch, shortfall);
     const auto least =
         static_cast<std::size_t>(std::min_element(shortfall.begin(), shortfall.end()) - shortfall.begin());
-    const std::size_t choice = guide.choose(world, batch, visits);
+    const std::size_t choice = scorer.choose(world, batch, visits);
     (choice == least ? result.same : visits[choice].cost <= visits[least].cost ? result.nearer : result.farther) += 1;
     const double plenty = std::clamp(0.1 * (batch.budget_per_work[0] - 1.2), 0.0, 1.0);
     const auto score = [&](std::size_t v) { return shortfall[v] + (0.5 * batch.unseen[0] + plenty) * visits[v].cost; };

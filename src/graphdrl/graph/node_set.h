@@ -1,0 +1,57 @@
+// Sets of nodes as bits: what a walk has visited.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "graphdrl/graph/graph.h"
+
+namespace graphdrl {
+
+// A set of the nodes 0 … N - 1, one bit each.
+class NodeSet {
+ public:
+  NodeSet() = default;
+  explicit NodeSet(NodeId node_count) : words_((static_cast<std::size_t>(node_count) + 63) / 64) {}
+
+  bool contains(NodeId node) const { return (words_[node / 64] >> (node % 64) & 1) != 0; }
+  void insert(NodeId node) { words_[node / 64] |= std::uint64_t{1} << (node % 64); }
+  bool empty() const { return words_.empty(); }  // made for no node at all
+  int count() const {
+    int sum = 0;
+    for (const std::uint64_t word : words_) sum += std::popcount(word);
+    return sum;
+  }
+
+  // For files: bit i % 64 of word i / 64 stands for node i.
+  std::vector<std::uint64_t>& words() { return words_; }
+  const std::vector<std::uint64_t>& words() const { return words_; }
+
+  friend bool operator==(const NodeSet&, const NodeSet&) = default;
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+// One of many sets that differ in few nodes: a set common to all, and a row of bits for the nodes that have a place in
+// it. A plain NodeSet is one without places. Refers to both; valid while they live.
+class NodeSetView {
+ public:
+  NodeSetView(const NodeSet& set) : common_(&set) {}  // NOLINT(google-explicit-constructor): a set is a view of itself
+  // place: [N], a node's bit in `row`, or -1 where `common` says whether it is in the set.
+  NodeSetView(const NodeSet& common, const std::int32_t* place, const std::uint64_t* row)
+      : common_(&common), place_(place), row_(row) {}
+
+  bool contains(NodeId node) const {
+    if (place_ == nullptr || place_[node] < 0) return common_->contains(node);
+    return (row_[place_[node] / 64] >> (place_[node] % 64) & 1) != 0;
+  }
+
+ private:
+  const NodeSet* common_;
+  const std::int32_t* place_ = nullptr;
+  const std::uint64_t* row_ = nullptr;
+};
+
+}  // namespace graphdrl

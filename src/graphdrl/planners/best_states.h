@@ -1,0 +1,81 @@
+// The candidates of a beam's next level, of which only the best can be kept.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "graphdrl/graph/graph.h"
+
+namespace graphdrl {
+
+inline constexpr std::size_t kRankings = 3;
+using Rankings = std::array<double, kRankings>;  // lower is better
+
+// A partial walk with one more first visit, not built yet.
+struct Candidate {
+  int parent;
+  NodeId node;
+  double spent;
+  double penalties;
+  Rankings rankings;
+  std::uint64_t visited_hash;  // of the visited set
+};
+inline constexpr double kCandidateBytes = sizeof(Candidate) + 32;  // and its place in the table of states
+
+// Candidates of different states (visited set and position). Of two that lead to one state the cheaper stays, with the
+// better of their first rankings.
+class BestStates {
+ public:
+  // width: how many will be kept at most.
+  explicit BestStates(std::size_t width);
+
+  void clear();
+  bool empty() const { return candidates_.empty(); }
+  std::span<const Candidate> all() const { return candidates_; }
+
+  void add(const Candidate& candidate);
+
+  // Candidates of the next parent follow. REQUIRES: parents come in ascending order.
+  void begin_parent();
+
+  // A candidate of this parent that is above this by every ranking will not be kept: enough others come before it by
+  // each. Of equals, those of earlier parents do.
+  const Rankings& worst_useful() const { return worst_useful_; }
+  bool is_useless(const Rankings& rankings) const {
+    return rankings[0] > worst_useful_[0] && rankings[1] > worst_useful_[1] && rankings[2] > worst_useful_[2];
+  }
+
+  // Keeps `width` at most: a third by each ranking, the first third by the first. Gives whether any had to go.
+  bool keep_best();
+
+  // Sorts what stands from a place on by one ranking.
+  void sort(std::size_t ranking, int from);
+
+ private:
+  static constexpr std::size_t kLeastSlots = 64;
+  struct Slot {
+    std::uint64_t hash = 0;
+    std::uint32_t generation = 0;  // whose slot it is; an older one's is free
+    std::uint32_t place = 0;
+  };
+  void note(const Rankings& rankings);
+  void update_worst_useful();
+  void grow();
+  // The slot of a state's hash: its own, or the free one where it belongs.
+  Slot& slot_of(std::uint64_t hash);
+
+  std::size_t width_;
+  std::vector<Candidate> candidates_;
+  std::vector<Slot> slots_;  // a power of two; open addressing
+  std::uint32_t generation_ = 0;
+  // How many are kept by each ranking and those before it, and heaps of as many of the best by it, the worst on top.
+  std::array<std::size_t, kRankings> shares_;
+  std::array<std::vector<double>, kRankings> best_;
+  Rankings worst_kept_{};    // by each ranking, so far
+  Rankings worst_before_{};  // likewise, of earlier parents alone
+  Rankings worst_useful_{};
+};
+
+}  // namespace graphdrl

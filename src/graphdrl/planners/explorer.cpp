@@ -1,0 +1,114 @@
+#include "graphdrl/planners/explorer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/planners/baselines.h"
+
+namespace graphdrl {
+namespace {
+
+// Of the rule of choose(), both in nodes; chosen on the validation split.
+constexpr double kWorthOfBudget = 0.5;  // of a mean edge's cost, to spend on work out of scope
+constexpr double kWorthOfPlenty = 0.1;  // likewise, for each mean edge a node that is left beyond kPlenty; 1 at most
+constexpr double kPlenty = 1.2;
+constexpr double kIndifference = 0.4;  // by which the nearest may fall behind, all work being out of scope
+
+constexpr int kBlockNodes = 8192;  // of states scored at once: their layers fit a core's second-level cache
+constexpr int kMostStates = 16;    // of those, so that a deadline is met to a few milliseconds
+constexpr int kVisitsPerTick = 8;
+
+}  // namespace
+
+SharedExplorer builtin_explorer() {
+  static const SharedExplorer explorer = std::make_shared<const ExplorerParameters>(
+      read_explorer(Safetensors::parse(std::string(builtin_explorer_file()), "the policy in the program")));
+  return explorer;
+}
+
+bool is_explorer_file(const std::string& path) {
+  const auto description = policy_description(Safetensors::read(path));
+  return description.is_object() && description.value("kind", nlohmann::json()) == "explorer";
+}
+
+SharedExplorer read_explorer_file(const std::string& path) {
+  return std::make_shared<const ExplorerParameters>(read_explorer(Safetensors::read(path)));
+}
+
+void ExplorerScorer::shortfalls(const ExplorerBatch& batch, std::vector<float>& shortfall) {
+  shortfall.resize(static_cast<std::size_t>(batch.visit_count()));
+  network_.forward(batch, shortfall);
+  for (const float value : shortfall) {
+    if (!std::isfinite(value)) throw Error({.what = "the explorer's weights are too large to compute with"});
+  }
+}
+
+int ExplorerScorer::most_states(const View& view) const {
+  return std::clamp(kBlockNodes / std::min(view.valid_count(), kExplorerScope), 1, kMostStates);
+}
+
+bool ExplorerScorer::score(const View& view, std::span<const ExplorationState> states,
+                           std::vector<ScoredVisit>& visits) {
+  visits.clear();
+  batch_.clear();
+  bool overlooked = false;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    for (const FirstVisit& visit : encoder_.append(view, states[i], kExplorerScope, batch_)) {
+      visits.push_back({.state = static_cast<int>(i), .visit = visit, .score = 0});
+    }
+    overlooked = overlooked || encoder_.overlooked();
+  }
+  if (visits.empty()) return overlooked;
+  shortfalls(batch_, shortfall_);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    visits[i].score = double{shortfall_[i]} - batch_.ceiling[visits[i].state];
+  }
+  return overlooked;
+}
+
+std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
+  shortfalls(batch, shortfall_);
+  const double unseen = batch.unseen[0];
+  const double unit = view.open().mean_cost();
+  const double worth =
+      kWorthOfBudget * unseen + std::clamp(kWorthOfPlenty * (batch.budget_per_work[0] - kPlenty), 0.0, 1.0);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    shortfall_[i] += static_cast<float>(worth * visits[i].cost / unit);
+  }
+  const double most = *std::min_element(shortfall_.begin(), shortfall_.end()) + kIndifference * unseen * unseen;
+  const auto choice = std::find_if(shortfall_.begin(), shortfall_.end(), [&](float score) { return score <= most; });
+  return static_cast<std::size_t>(choice - shortfall_.begin());
+}
+
+Plan ExplorerPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
+  require_plain_task(task, "explorer");
+  if (!deadline) return walk_until(task, {}, report);
+  return plan_by_deadline(task, deadline, [&](Deadline until) { return walk_until(task, until, report); });
+}
+
+Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Report& report) {
+  Ticker ticker(deadline, report, kVisitsPerTick);
+  NodeSet visited = task.visited_before();
+  ExplorationState state{
+      .visited = visited, .visited_count = visited.count(), .position = task.start, .spendable = task.limit()};
+  ExplorerBatch batch;
+  std::vector<NodeId> first_visits;
+  bool optimal = true;
+  do {
+    batch.clear();
+    const std::span<const FirstVisit> visits = scorer_->encoder().append(task.view, state, kExplorerScope, batch);
+    if (visits.empty()) return plan_of_walk(task, walk_through(task, first_visits, search_), optimal);
+    optimal = optimal && visits.size() == 1 && !scorer_->encoder().overlooked();
+    const FirstVisit choice = visits[scorer_->choose(task.view, batch, visits)];
+    first_visits.push_back(choice.node);
+    visited.insert(choice.node);
+    ++state.visited_count;
+    state.position = choice.node;
+    state.spendable -= choice.cost;
+  } while (!ticker.tick(state.visited_count, task.view.valid_count()));
+  return plan_of_walk(task, walk_through(task, first_visits, search_));
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,77 @@
+// The trained explorer as a planner, and as the scorer of a beam.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graphdrl/nn/explorer_network.h"
+#include "graphdrl/planners/plan.h"
+#include "graphdrl/planners/scorer.h"
+
+namespace graphdrl {
+
+using SharedExplorer = std::shared_ptr<const ExplorerParameters>;
+
+// The policy file that is part of the program, policies/explorer.safetensors; made at build time.
+std::string_view builtin_explorer_file();
+SharedExplorer builtin_explorer();
+
+// Whether a policy file holds an explorer. Throws Error where it holds no policy.
+bool is_explorer_file(const std::string& path);
+
+// An explorer from a policy file. Throws Error.
+SharedExplorer read_explorer_file(const std::string& path);
+
+// An explorer at work: its network, and scratch memory for states of any world. One thread at a time.
+class ExplorerScorer final : public FirstVisitScorer {
+ public:
+  explicit ExplorerScorer(SharedExplorer parameters) : parameters_(std::move(parameters)) {
+    network_.set_parameters(*parameters_);
+  }
+
+  // A score is the shortfall less the state's ceiling: how many nodes will be left, but for what all states share.
+  // Throws Error where the network's weights are so large that it gives no number.
+  bool score(const View& view, std::span<const ExplorationState> states, std::vector<ScoredVisit>& visits) override;
+  int most_states(const View& view) const override;
+  int most_visits() const override { return kExplorerScope; }
+
+  // How many nodes the best walk after each first visit falls short of its state's ceiling. shortfall: [C], resized.
+  // Throws Error as score() does.
+  void shortfalls(const ExplorerBatch& batch, std::vector<float>& shortfall);
+
+  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. A score is the
+  // shortfall, and for every mean edge of the first visit's cost 0.5 u nodes, with a share u of the work out of scope,
+  // and 0.1 (b - 1.2) nodes, 0 to 1, with b mean edges left for each unvisited node. The nearest whose score is within
+  // 0.4 u² of the least: the one of the least shortfall where all the work is in scope and the budget is short. In
+  // worlds much larger than the scope, and with budget to spare, which the network would waste, this visits several
+  // points more than the shortfall alone (docs/explorer.md).
+  std::size_t choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
+
+  ExplorerEncoder& encoder() { return encoder_; }
+
+ private:
+  SharedExplorer parameters_;
+  ExplorerNetwork network_;
+  ExplorerEncoder encoder_;
+  ExplorerBatch batch_;
+  std::vector<float> shortfall_;
+};
+
+// The explorer alone: one first visit after the other, each as ExplorerScorer::choose says. Where a deadline cuts it
+// short, it is walked on by the nearest rule [plan_by_deadline()].
+class ExplorerPlanner final : public Planner {
+ public:
+  explicit ExplorerPlanner(std::shared_ptr<ExplorerScorer> scorer) : scorer_(std::move(scorer)) {}
+
+  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+
+ private:
+  Plan walk_until(const Task& task, Deadline deadline, const Report& report);
+
+  std::shared_ptr<ExplorerScorer> scorer_;
+  NearestFirst search_;
+};
+
+}  // namespace graphdrl
