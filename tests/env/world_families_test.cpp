@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "graphdrl/graph/search.h"
+#include "graphdrl/graph/components.h"
 #include "support.h"
 
 namespace graphdrl {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "graphdrl/graph/search.h"
+#include "graphdrl/graph/components.h"
 
 namespace graphdrl {
 namespace {

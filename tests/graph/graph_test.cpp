@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "graphdrl/graph/components.h"
 #include "graphdrl/graph/grid_map.h"
 #include "graphdrl/graph/search.h"
 #include "support.h"

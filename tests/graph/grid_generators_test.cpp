@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "graphdrl/graph/search.h"
+#include "graphdrl/graph/components.h"
 
 namespace graphdrl {
 namespace {

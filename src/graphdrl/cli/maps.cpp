@@ -10,7 +10,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
-#include "graphdrl/graph/search.h"
+#include "graphdrl/graph/components.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/node_link.h"
@@ -156,6 +156,11 @@ void add_maps_command(CLI::App& app) {
       ->type_name("FAMILY");
   generate->add_option("--size", making->spec.size, "Cells a side of a grid, else nodes")->required()->type_name("N");
   generate->add_option("--count", making->count, "How many")->check(CLI::Range(1, 100'000))->capture_default_str();
+  generate
+      ->add_option("--blocked", making->spec.blocked,
+                   "Share of blocked cells, 0 to 0.9, instead of a drawn one; obstacles only. The largest connected "
+                   "part of the others stays free")
+      ->type_name("SHARE");
   generate->add_flag("--weighted", making->spec.weighted, "Edges of different costs; graphs only");
   generate->add_flag("--directed", making->spec.directed, "Three edges in ten lead one way only; graphs only");
   CLI::Option* const seed = generate->add_option("--seed", making->seed, "The same seed gives the same worlds")

@@ -13,9 +13,10 @@ namespace graphdrl {
 namespace {
 
 constexpr int kMinSide = 3;
-constexpr int kMaxSide = 500;
+constexpr int kMaxSide = 1001;
 constexpr int kMinNodes = 2;
-constexpr int kMaxNodes = 20'000;
+constexpr int kMaxNodes = 1'000'000;
+constexpr double kMaxBlocked = 0.9;
 constexpr int kMostCost = 5;
 constexpr double kOneWayShare = 0.3;
 
@@ -40,9 +41,11 @@ World grid_world_of(const WorldSpec& spec, Rng& rng) {
   const int side = spec.size;
   const auto map = [&]() -> GridMap {
     if (spec.family == "obstacles") {
+      const int least_free = spec.blocked ? 1 : side * side / 2;
       for (;;) {
-        GridMap drawn = random_obstacles_map(side, side, draw(0.1, 0.4, rng), rng);
-        if (2 * std::count(drawn.blocked.begin(), drawn.blocked.end(), false) >= side * side - 1) return drawn;
+        const double share = spec.blocked ? *spec.blocked : draw(0.1, 0.4, rng);
+        GridMap drawn = random_obstacles_map(side, side, share, rng);
+        if (std::count(drawn.blocked.begin(), drawn.blocked.end(), false) >= least_free) return drawn;
       }
     }
     if (spec.family == "maze") return maze_map(side, side, 0, rng);
@@ -83,6 +86,14 @@ const WorldFamily& find_family(const WorldSpec& spec) {
   }
   if (family->grid && (spec.weighted || spec.directed)) {
     throw Error({.what = "grids have neither costs nor directions", .got = in_quotes(spec.family)});
+  }
+  if (spec.blocked && family->name != "obstacles") {
+    throw Error({.what = "a share of blocked cells is for the family obstacles", .got = in_quotes(spec.family)});
+  }
+  if (spec.blocked && !(*spec.blocked >= 0 && *spec.blocked <= kMaxBlocked)) {
+    throw Error({.what = "bad share of blocked cells",
+                 .expected = fmt::format("0 to {}", kMaxBlocked),
+                 .got = fmt::format("{}", *spec.blocked)});
   }
   return *family;
 }

@@ -1,6 +1,7 @@
 // Families of random worlds, and their frozen splits for training, validation and test.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,12 +26,16 @@ struct WorldSpec {
   int size;  // side of a grid, else nodes
   bool weighted = false;
   bool directed = false;
+  // Of obstacles: each cell blocked with this probability instead of a drawn one, and only the largest connected part
+  // left free, however small.
+  std::optional<double> blocked = {};
 
-  std::string name() const;  // "maze-11", "tree-50-weighted-directed"
+  std::string name() const;  // "maze-11", "tree-50-weighted-directed"; without the share
 };
 
 // The family's parameters are drawn from their ranges, then the world. Every world is connected, whichever way its
-// edges lead. Throws Error on an unknown family, a size that it does not have, and on costs or directions of a grid.
+// edges lead. Throws Error on an unknown family, on a size, costs, directions or a share of blocked cells that it
+// does not have.
 World random_world(const WorldSpec& spec, Rng& rng);
 
 enum class Split { kTrain, kValidation, kTest };

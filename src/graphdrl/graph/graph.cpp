@@ -4,18 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/graph/grid_map.h"
 
 namespace graphdrl {
+namespace {
 
-Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind) {
-  struct Arc {
-    NodeId to;
-    double cost;
-  };
-  std::vector<std::vector<Arc>> lists(node_count);
+// Below this a double holds every whole number.
+constexpr double kExactIntegers = 0x1p53;
+
+// Throws Error on an edge out of range and on a bad cost.
+void check_edges(NodeId node_count, std::span<const Edge> edges) {
   for (const Edge& edge : edges) {
     for (const NodeId end : {edge.a, edge.b}) {
       if (end < 0 || end >= node_count) {
@@ -24,35 +25,82 @@ Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind
                      .got = fmt::format("{}", end)});
       }
     }
-    if (!(edge.cost > 0) || !std::isfinite(edge.cost)) {
+    if (!(edge.cost >= 0) || !std::isfinite(edge.cost)) {
       throw Error({.what = fmt::format("bad cost of the edge from {} to {}", edge.a, edge.b),
-                   .expected = "a positive finite number",
+                   .expected = "a finite number from 0 up",
                    .got = fmt::format("{}", edge.cost)});
     }
-    if (edge.a == edge.b) continue;
-    lists[edge.a].push_back({edge.b, edge.cost});
-    if (kind == EdgeKind::kUndirected) lists[edge.b].push_back({edge.a, edge.cost});
   }
+}
+
+// One way along an edge.
+struct Arc {
+  NodeId to;
+  double cost;
+};
+
+// Arcs by the node they leave.
+struct ArcLists {
+  std::vector<Arc> arcs;
+  std::vector<std::int64_t> ends;  // [N], where a node's arcs end and those of the next one begin
+};
+
+// A counting sort, linear in nodes and edges.
+ArcLists arcs_by_node(NodeId node_count, std::span<const Edge> edges, EdgeKind kind) {
+  const bool both_ways = kind == EdgeKind::kUndirected;
+  ArcLists lists{.arcs = {}, .ends = std::vector<std::int64_t>(node_count)};
+  for (const Edge& edge : edges) {
+    if (edge.a == edge.b) continue;
+    ++lists.ends[edge.a];
+    if (both_ways) ++lists.ends[edge.b];
+  }
+  std::exclusive_scan(lists.ends.begin(), lists.ends.end(), lists.ends.begin(), std::int64_t{0});
+  lists.arcs.resize(edges.size() * (both_ways ? 2 : 1));
+  for (const Edge& edge : edges) {
+    if (edge.a == edge.b) continue;
+    const double cost = edge.cost + 0.0;  // turns -0 into 0
+    lists.arcs[lists.ends[edge.a]++] = {edge.b, cost};
+    if (both_ways) lists.arcs[lists.ends[edge.b]++] = {edge.a, cost};
+  }
+  return lists;
+}
+
+}  // namespace
+
+Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind) {
+  check_edges(node_count, edges);
+  ArcLists lists = arcs_by_node(node_count, edges, kind);
+  const bool unit_costs = std::all_of(edges.begin(), edges.end(), [](const Edge& edge) { return edge.cost == 1; });
   Graph graph;
   graph.kind_ = kind;
-  for (auto& list : lists) {
+  graph.offsets_.reserve(static_cast<std::size_t>(node_count) + 1);
+  graph.neighbours_.reserve(lists.arcs.size());
+  if (!unit_costs) graph.costs_.reserve(lists.arcs.size());
+  std::int64_t begin = 0;
+  for (const std::int64_t end : lists.ends) {
+    const std::span<Arc> list(lists.arcs.data() + begin, lists.arcs.data() + end);
     std::sort(list.begin(), list.end(), [](const Arc& one, const Arc& other) {
       return one.to != other.to ? one.to < other.to : one.cost < other.cost;
     });
-    const auto same = [](const Arc& one, const Arc& other) { return one.to == other.to; };
-    list.erase(std::unique(list.begin(), list.end(), same), list.end());
+    NodeId last = kNoNode;
     for (const Arc& arc : list) {
+      if (arc.to == last) continue;  // a parallel edge, dearer or as dear
+      last = arc.to;
       graph.neighbours_.push_back(arc.to);
-      graph.costs_.push_back(arc.cost);
+      if (!unit_costs) graph.costs_.push_back(arc.cost);
     }
     graph.close_node();
+    begin = end;
   }
-  graph.forget_unit_costs();
+  graph.settle_costs();
   return graph;
 }
 
 Graph Graph::grid(int rows, int cols) {
   Graph graph;
+  const auto nodes = static_cast<std::size_t>(rows) * cols;
+  graph.offsets_.reserve(nodes + 1);
+  graph.neighbours_.reserve(kAllDirections.size() * nodes);
   for (NodeId node = 0; node < rows * cols; ++node) {
     for (const Direction direction : kAllDirections) {
       const NodeId next = grid_neighbour(rows, cols, node, direction);
@@ -87,16 +135,18 @@ int Graph::index_of(NodeId node, NodeId next) const {
 Graph Graph::without(const std::vector<bool>& dropped) const {
   Graph graph;
   graph.kind_ = kind_;
+  graph.offsets_.reserve(offsets_.size());
+  graph.neighbours_.reserve(neighbours_.size());
+  graph.costs_.reserve(costs_.size());
   for (NodeId node = 0; node < node_count(); ++node) {
-    for (int i = 0; i < degree(node); ++i) {
-      const NodeId next = neighbours(node)[i];
-      if (dropped[node] || dropped[next]) continue;
-      graph.neighbours_.push_back(next);
-      graph.costs_.push_back(cost(node, i));
+    for (std::int64_t i = offsets_[node]; i < offsets_[node + 1]; ++i) {
+      if (dropped[node] || dropped[neighbours_[i]]) continue;
+      graph.neighbours_.push_back(neighbours_[i]);
+      if (weighted()) graph.costs_.push_back(costs_[i]);
     }
     graph.close_node();
   }
-  graph.forget_unit_costs();
+  graph.settle_costs();
   return graph;
 }
 
@@ -109,37 +159,28 @@ Graph Graph::from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> n
 
 Graph Graph::reversed() const {
   if (!directed()) return *this;
-  std::vector<Edge> turned = edges();
-  for (Edge& edge : turned) std::swap(edge.a, edge.b);
-  return from_edges(node_count(), turned, kind_);
-}
-
-double Graph::mean_cost() const {
-  if (costs_.empty()) return 1;
-  double sum = 0;
-  for (const double cost : costs_) sum += cost;
-  return sum / static_cast<double>(costs_.size());
-}
-
-double Graph::min_cost() const {
-  return costs_.empty() ? 1 : *std::min_element(costs_.begin(), costs_.end());
-}
-
-double Graph::max_cost() const {
-  return costs_.empty() ? 1 : *std::max_element(costs_.begin(), costs_.end());
-}
-
-bool Graph::integer_costs() const {
-  double sum = 0;
-  for (const double cost : costs_) {
-    if (cost != std::floor(cost)) return false;
-    sum += cost;
+  Graph graph;
+  graph.kind_ = kind_;
+  graph.offsets_.assign(offsets_.size(), 0);
+  for (const NodeId next : neighbours_) ++graph.offsets_[next + 1];
+  std::partial_sum(graph.offsets_.begin(), graph.offsets_.end(), graph.offsets_.begin());
+  graph.neighbours_.resize(neighbours_.size());
+  graph.costs_.resize(costs_.size());
+  std::vector<std::int64_t> place = graph.offsets_;
+  for (NodeId node = 0; node < node_count(); ++node) {
+    for (std::int64_t i = offsets_[node]; i < offsets_[node + 1]; ++i) {
+      const std::int64_t at = place[neighbours_[i]]++;
+      graph.neighbours_[at] = node;
+      if (weighted()) graph.costs_[at] = costs_[i];
+    }
   }
-  return sum < 0x1p53;
+  graph.settle_costs();
+  return graph;
 }
 
 std::vector<Edge> Graph::edges() const {
   std::vector<Edge> edges;
+  edges.reserve(static_cast<std::size_t>(edge_count()));
   for (NodeId node = 0; node < node_count(); ++node) {
     for (int i = 0; i < degree(node); ++i) {
       const NodeId next = neighbours(node)[i];
@@ -149,8 +190,22 @@ std::vector<Edge> Graph::edges() const {
   return edges;
 }
 
-void Graph::forget_unit_costs() {
-  if (std::all_of(costs_.begin(), costs_.end(), [](double cost) { return cost == 1; })) costs_.clear();
+void Graph::settle_costs() {
+  if (std::all_of(costs_.begin(), costs_.end(), [](double cost) { return cost == 1; })) {
+    costs_ = {};
+    return;
+  }
+  double sum = 0;
+  bool integers = true;
+  for (const double cost : costs_) {
+    sum += cost;
+    integers = integers && cost == std::floor(cost);
+  }
+  const auto [least, most] = std::minmax_element(costs_.begin(), costs_.end());
+  min_cost_ = *least;
+  max_cost_ = *most;
+  mean_cost_ = sum > 0 ? sum / static_cast<double>(costs_.size()) : 1;
+  integer_costs_ = integers && sum < kExactIntegers;
 }
 
 }  // namespace graphdrl

@@ -27,8 +27,8 @@ class Graph {
   Graph() = default;
 
   // Neighbours in ascending order. A loop is left out, for a walk never gains by it; of parallel edges the cheapest
-  // stays. Throws Error on an edge out of range and on a cost that is not positive and finite. REQUIRES: node_count >=
-  // 0.
+  // stays. Throws Error on an edge out of range and on a cost that is negative or not finite. Cost: linear but for
+  // sorting each node's neighbours. REQUIRES: node_count >= 0.
   static Graph from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind = EdgeKind::kUndirected);
 
   // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down; every edge costs 1.
@@ -64,11 +64,14 @@ class Graph {
   // The place of `next` in neighbours(node), or -1. Cost: O(log degree), or O(4) on a grid.
   int index_of(NodeId node, NodeId next) const;
 
-  double mean_cost() const;  // of the edges; 1 where there are none
-  double min_cost() const;   // likewise
-  double max_cost() const;
-  // Whether every cost is a whole number, and sums of them are exact: together they stay below 2^53.
-  bool integer_costs() const;
+  // What edges cost; 1 where there are none. Known since the graph was made. The mean is 1 where all cost 0.
+  double min_cost() const { return min_cost_; }
+  double max_cost() const { return max_cost_; }
+  double mean_cost() const { return mean_cost_; }
+
+  // Every cost is a whole number, and their sum, an undirected edge counted twice, is below 2^53: sums of costs are
+  // exact, in any order.
+  bool integer_costs() const { return integer_costs_; }
 
   // Every edge, an undirected one from its lower node.
   std::vector<Edge> edges() const;
@@ -76,12 +79,17 @@ class Graph {
  private:
   // Goes on with the next node: the neighbours of this one, and their costs where there are any, were just added.
   void close_node() { offsets_.push_back(std::ssize(neighbours_)); }
-  void forget_unit_costs();
+  // Forgets costs that are all 1, else computes what is known of them.
+  void settle_costs();
 
   EdgeKind kind_ = EdgeKind::kUndirected;
   std::vector<std::int64_t> offsets_ = {0};  // [N + 1]
   std::vector<NodeId> neighbours_;           // [2E], or [E] of a directed graph
   std::vector<double> costs_;                // as neighbours_; empty where every edge costs 1
+  double min_cost_ = 1;
+  double max_cost_ = 1;
+  double mean_cost_ = 1;
+  bool integer_costs_ = true;
 };
 
 }  // namespace graphdrl

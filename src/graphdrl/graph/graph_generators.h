@@ -1,5 +1,6 @@
 // Random graphs, undirected, every edge of cost 1 unless said. The same random numbers give the same graph, which
-// frozen test sets need; lengths may differ in their last digit between C libraries. REQUIRES everywhere: nodes >= 1.
+// frozen test sets need; lengths may differ in their last digit between C libraries. Time and memory grow with nodes
+// and edges unless said. REQUIRES everywhere: nodes >= 1.
 #pragma once
 
 #include "graphdrl/base/random.h"
@@ -10,8 +11,8 @@ namespace graphdrl {
 // A tree drawn uniformly from all on these nodes [Aldous 1990; Broder 1989].
 Graph random_tree(int nodes, Rng& rng);
 
-// Each pair of nodes an edge with the probability that gives this mean degree [Erdős and Rényi 1959]. REQUIRES:
-// mean_degree >= 0.
+// Each pair of nodes an edge with the probability that gives this mean degree [Erdős and Rényi 1959]. Up to 20,000
+// nodes each pair draws a number; above, time grows with nodes and edges only. REQUIRES: 0 <= mean_degree < nodes - 1.
 Graph erdos_renyi_graph(int nodes, double mean_degree, Rng& rng);
 
 // Nodes join one after the other, each by `links` edges to nodes drawn in proportion to their degree [Barabási and
@@ -26,7 +27,7 @@ Graph watts_strogatz_graph(int nodes, int reach, double rewired, Rng& rng);
 // edges' lengths, in mean edges, are their costs with `lengths_cost`.
 Graph geometric_graph(int nodes, double mean_degree, bool lengths_cost, Rng& rng);
 
-// The largest connected part, its nodes renumbered in ascending order; the part met first among equals.
+// The largest connected part, its nodes renumbered in ascending order; of equally large ones that of the lowest node.
 Graph largest_part(const Graph& graph);
 
 // The same edges, at costs drawn uniformly from the integers 1 to `most`.

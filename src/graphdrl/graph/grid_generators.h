@@ -19,11 +19,12 @@ GridMap maze_map(int rows, int cols, double loops, Rng& rng);
 // `braid`.
 GridMap braided_maze_map(int rows, int cols, double braid, Rng& rng);
 
-// Rectangular rooms of 2 to max_room cells a side, joined by corridors one cell wide into one connected map.
+// Rectangular rooms of 2 to max_room cells a side, joined by corridors one cell wide into one connected map: each room
+// to the one drawn before it, and to a near one in maps of more than 250,000 cells.
 // REQUIRES: max_room, rows, cols >= 2.
 GridMap rooms_map(int rows, int cols, int max_room, Rng& rng);
 
-// The same map with everything but its largest connected part blocked; the part met first among equals.
+// The same map with everything but its largest connected part blocked; of equally large ones that of the lowest cell.
 GridMap largest_component(const GridMap& map);
 
 }  // namespace graphdrl

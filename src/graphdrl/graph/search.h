@@ -134,8 +134,4 @@ void NearestFirst::run_dijkstra(const Graph& graph, NodeId from, double max_cost
 // turned round. Cost: O(nodes + edges), times a logarithm where edges have costs.
 std::vector<double> costs_to(const Graph& into, NodeId goal);
 
-// How many connected components the nodes that are not blocked fall into, whichever way edges lead. REQUIRES: blocked
-// has a value per node.
-int count_components(const Graph& graph, const std::vector<bool>& blocked);
-
 }  // namespace graphdrl
