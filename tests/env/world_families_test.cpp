@@ -73,8 +73,34 @@ TEST(WorldFamilies, SayWhatTheyDoNotHave) {
   EXPECT_THAT(message({"cave", 9}), HasSubstr("no such family"));
   EXPECT_THAT(message({"maze", 8}), HasSubstr("an odd number of cells a side"));
   EXPECT_THAT(message({"tree", 1}), HasSubstr("nodes from 2"));
+  EXPECT_THAT(message({"tree", 1'000'001}), HasSubstr("nodes from 2 to 1000000"));
   EXPECT_THAT(message({"rooms", 9, true}), HasSubstr("neither costs nor directions"));
-  EXPECT_THAT(message({"obstacles", 100'000}), HasSubstr("cells a side from 3 to 500"));
+  EXPECT_THAT(message({"obstacles", 100'000}), HasSubstr("cells a side from 3 to 1001"));
+}
+
+TEST(WorldFamilies, GoOnAboveTheFormerLimits) {
+  for (const WorldFamily& family : world_families()) {
+    const WorldSpec spec{std::string(family.name), family.grid ? 501 : 20'001};
+    const World world = split_world(spec, Split::kTest, 0);
+    EXPECT_EQ(count_components(world.graph(), world.blocked()), 1) << spec.name();
+    EXPECT_GT(world.valid_count(), 15'000) << spec.name();
+  }
+}
+
+TEST(WorldFamilies, BlockTheShareAskedFor) {
+  const auto make = [](std::string family, int size, double share) {
+    return split_world({.family = std::move(family), .size = size, .blocked = share}, Split::kTest, 3);
+  };
+  const World world = make("obstacles", 100, 0.2);
+  EXPECT_EQ(world.name(), "obstacles-100");
+  EXPECT_EQ(count_components(world.graph(), world.blocked()), 1);
+  EXPECT_NEAR(world.valid_count(), 8000, 200);
+  EXPECT_EQ(make("obstacles", 9, 0).valid_count(), 81);
+  for (int size = 3; size < 20; ++size) EXPECT_GE(make("obstacles", size, 0.9).valid_count(), 1);
+  EXPECT_THAT(error_of([&] { make("maze", 9, 0.2); }), HasSubstr("for the family obstacles: got 'maze'"));
+  for (const double share : {-0.1, 0.91, static_cast<double>(NAN)}) {
+    EXPECT_THAT(error_of([&] { make("obstacles", 9, share); }), HasSubstr("blocked cells: expected 0 to 0.9"));
+  }
 }
 
 }  // namespace

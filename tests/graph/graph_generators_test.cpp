@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "graphdrl/graph/components.h"
 
@@ -72,6 +74,93 @@ TEST(GraphGenerators, CostLengths) {
   EXPECT_NEAR(graph.mean_cost(), 1, 1e-9);
 }
 
+TEST(GraphGenerators, GeometricLooksAtEveryPair) {
+  for (const int nodes : {1, 2, 7, 60, 400}) {
+    for (const double degree : {0.01, 1.0, 6.0, 80.0}) {
+      Rng rng(7);
+      Rng same(7);
+      const Graph graph = geometric_graph(nodes, degree, true, rng);
+      const double radius = std::sqrt(degree / (std::numbers::pi * nodes));
+      std::vector<double> x(nodes);
+      std::vector<double> y(nodes);
+      for (int i = 0; i < nodes; ++i) {
+        x[i] = same.uniform();
+        y[i] = same.uniform();
+      }
+      std::vector<Edge> edges;
+      double sum = 0;
+      for (int a = 0; a < nodes; ++a) {
+        for (int b = a + 1; b < nodes; ++b) {
+          const double length = std::hypot(x[a] - x[b], y[a] - y[b]);
+          if (length < radius) edges.push_back({a, b, length});
+          if (length < radius) sum += length;
+        }
+      }
+      for (Edge& edge : edges) edge.cost /= sum / static_cast<double>(edges.size());
+      const std::vector<Edge> found = graph.edges();
+      ASSERT_EQ(found.size(), edges.size());
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        EXPECT_TRUE(found[i].a == edges[i].a && found[i].b == edges[i].b && found[i].cost == edges[i].cost);
+      }
+    }
+  }
+}
+
+TEST(GraphGenerators, WattsStrogatzIsThatOfTheMatrix) {
+  for (int nodes = 1; nodes <= 40; ++nodes) {
+    for (const int reach : {1, 2, 5}) {
+      Rng rng(nodes);
+      Rng same(nodes);
+      std::vector<std::vector<bool>> matrix(nodes, std::vector<bool>(nodes));
+      const auto set = [&](int a, int b, bool value) { matrix[a][b] = matrix[b][a] = value; };
+      for (int node = 0; node < nodes; ++node) {
+        for (int step = 1; step <= reach && step < nodes; ++step) set(node, (node + step) % nodes, true);
+      }
+      for (int step = 1; step <= reach && step < nodes; ++step) {
+        for (int node = 0; node < nodes; ++node) {
+          if (same.uniform() >= 0.4) continue;
+          const int next = static_cast<int>(same.below(static_cast<std::uint32_t>(nodes)));
+          if (next == node || matrix[node][next]) continue;
+          set(node, (node + step) % nodes, false);
+          set(node, next, true);
+        }
+      }
+      const Graph graph = watts_strogatz_graph(nodes, reach, 0.4, rng);
+      for (NodeId a = 0; a < nodes; ++a) {
+        const auto next = graph.neighbours(a);
+        for (NodeId b = 0; b < nodes; ++b) {
+          EXPECT_EQ(std::binary_search(next.begin(), next.end(), b), matrix[a][b]) << nodes << ' ' << reach;
+        }
+      }
+    }
+  }
+}
+
+TEST(GraphGenerators, TakeAMillionNodes) {
+  constexpr int kNodes = 1'000'000;
+  Rng rng(8);
+  EXPECT_EQ(watts_strogatz_graph(kNodes, 2, 0.2, rng).edge_count(), 2 * kNodes);
+  EXPECT_NEAR(mean_degree(geometric_graph(kNodes, 5, false, rng)), 5, 0.05);
+  Rng draws = rng;
+  const Graph sparse = erdos_renyi_graph(kNodes, 3, rng);
+  EXPECT_NEAR(mean_degree(sparse), 3, 0.02);
+  for (std::int64_t i = 0; i <= sparse.edge_count(); ++i) draws.next();
+  EXPECT_EQ(draws.state(), rng.state()) << "a number per edge, and one to pass the end";
+  EXPECT_EQ(erdos_renyi_graph(kNodes, 0, rng).edge_count(), 0);
+}
+
+// The pairs that skips lead to are as likely as all others: whether they are near the begin or the end.
+TEST(GraphGenerators, SkipsReachAllPairs) {
+  constexpr int kNodes = 30'000;
+  Rng rng(9);
+  const Graph graph = erdos_renyi_graph(kNodes, 40, rng);
+  for (const int begin : {0, 14'000, 29'000}) {
+    double degrees = 0;
+    for (NodeId node = begin; node < begin + 1000; ++node) degrees += graph.degree(node);
+    EXPECT_NEAR(degrees / 1000, 40, 1) << begin;
+  }
+}
+
 TEST(LargestPart, KeepsTheLargestWithItsCosts) {
   const std::vector<Edge> edges = {{0, 1}, {2, 4, 3.0}, {4, 5}};
   const Graph part = largest_part(Graph::from_edges(6, edges));
@@ -100,6 +189,17 @@ TEST(OneWayEdges, LeadOneWayInTheirShare) {
   const double arcs_per_edge = static_cast<double>(directed.edge_count()) / static_cast<double>(graph.edge_count());
   EXPECT_NEAR(arcs_per_edge, 1.7, 0.05);
   EXPECT_EQ(with_one_way_edges(graph, 0, rng).edge_count(), 2 * graph.edge_count());
+}
+
+TEST(Graph, InducesTheEdgesAmongTheNodesGiven) {
+  const Graph grid = Graph::grid(2, 3);  // 0 1 2 over 3 4 5
+  std::vector<NodeId> number(6, kNoNode);
+  const std::vector<NodeId> nodes = {4, 1, 0};
+  const Graph part = grid.induced(nodes, number);
+  EXPECT_EQ(part.node_count(), 3);
+  EXPECT_EQ(part.edges().size(), 2u);
+  EXPECT_EQ(part.neighbours(1).size(), 2u);  // node 1: 4 and 0
+  EXPECT_EQ(number, std::vector<NodeId>(6, kNoNode));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 
 #include "graphdrl/graph/components.h"
 #include "graphdrl/graph/grid_map.h"
@@ -27,7 +28,7 @@ TEST(Graph, KeepsNeighboursAscendingAndEdgesOnce) {
 TEST(Graph, LeavesOutLoopsAndRefusesStrangeNodesAndCosts) {
   const std::vector<Edge> loop = {{1, 1}, {0, 1}};
   EXPECT_EQ(Graph::from_edges(3, loop).edge_count(), 1);
-  for (const double cost : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+  for (const double cost : {-1.0, -1e-300, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
     const std::vector<Edge> edge = {{0, 1, cost}};
     EXPECT_THAT(error_of([&] { Graph::from_edges(2, edge); }), HasSubstr("bad cost of the edge from 0 to 1"));
   }
@@ -45,6 +46,64 @@ TEST(Graph, KeepsTheCheapestOfParallelEdges) {
   EXPECT_EQ(graph.mean_cost(), 3);
   const std::vector<Edge> unit = {{0, 1, 1}};
   EXPECT_FALSE(Graph::from_edges(2, unit).weighted());
+}
+
+TEST(Graph, SortsManyParallelEdgesAndLoops) {
+  Rng rng(1);
+  for (const EdgeKind kind : {EdgeKind::kUndirected, EdgeKind::kDirected}) {
+    std::vector<Edge> edges;
+    std::map<std::pair<NodeId, NodeId>, double> cheapest;  // by source and target
+    for (int i = 0; i < 500; ++i) {
+      const Edge edge{static_cast<NodeId>(rng.below(12)), static_cast<NodeId>(rng.below(12)), rng.uniform()};
+      edges.push_back(edge);
+      if (edge.a == edge.b) continue;
+      const auto note = [&](NodeId a, NodeId b) {
+        const auto known = cheapest.try_emplace({a, b}, edge.cost).first;
+        known->second = std::min(known->second, edge.cost);
+      };
+      note(edge.a, edge.b);
+      if (kind == EdgeKind::kUndirected) note(edge.b, edge.a);
+    }
+    const Graph graph = Graph::from_edges(12, edges, kind);
+    auto expected = cheapest.begin();
+    for (NodeId node = 0; node < 12; ++node) {
+      for (int i = 0; i < graph.degree(node); ++i, ++expected) {
+        ASSERT_EQ(expected->first, std::pair(node, graph.neighbours(node)[i]));
+        EXPECT_EQ(expected->second, graph.cost(node, i));
+      }
+    }
+    EXPECT_EQ(expected, cheapest.end());
+  }
+}
+
+TEST(Graph, CostsMayBeZero) {
+  const std::vector<Edge> edges = {{0, 1, 0}, {1, 2, 3}, {2, 3, -0.0}};
+  const Graph graph = Graph::from_edges(4, edges);
+  EXPECT_EQ(graph.cost(0, 0), 0);
+  EXPECT_FALSE(std::signbit(graph.cost(3, 0)));
+  EXPECT_EQ(graph.mean_cost(), 1);
+  EXPECT_EQ(graph.without({false, false, true, false}).mean_cost(), 1) << "all that are left cost 0";
+  EXPECT_EQ(graph.without({false, false, true, false}).max_cost(), 0);
+}
+
+TEST(Graph, KnowsItsCosts) {
+  const auto of = [](std::vector<Edge> edges) { return Graph::from_edges(4, edges); };
+  const Graph whole = of({{0, 1, 2}, {1, 2, 7}, {2, 3, 0}});
+  EXPECT_TRUE(whole.integer_costs());
+  EXPECT_EQ(whole.min_cost(), 0);
+  EXPECT_EQ(whole.max_cost(), 7);
+  EXPECT_EQ(whole.mean_cost(), 3);
+  EXPECT_FALSE(of({{0, 1, 2}, {1, 2, 2.5}}).integer_costs());
+  EXPECT_TRUE(of({{0, 1, 0x1p51}}).integer_costs());
+  EXPECT_FALSE(of({{0, 1, 0x1p52}}).integer_costs()) << "there and back is 2^53";
+  EXPECT_FALSE(of({{0, 1, 1e300}}).integer_costs());
+  const Graph plain = of({{0, 1}});
+  EXPECT_TRUE(plain.integer_costs() && plain.min_cost() == 1 && plain.max_cost() == 1 && plain.mean_cost() == 1);
+  EXPECT_TRUE(Graph::grid(2, 2).integer_costs());
+  EXPECT_TRUE(Graph().integer_costs());
+  const Graph part = of({{0, 1, 2}, {1, 2, 2.5}}).without({false, false, true, false});
+  EXPECT_TRUE(part.integer_costs());
+  EXPECT_EQ(part.max_cost(), 2);
 }
 
 TEST(Graph, DirectedEdgesLeadOneWay) {

@@ -86,5 +86,21 @@ TEST(GridGenerators, RoomsAreConnectedAndRepeatable) {
   }
 }
 
+TEST(GridGenerators, LargeMapsHaveRoomsAndWallsToo) {
+  Rng rng(2);
+  const GridMap map = rooms_map(601, 601, 4, rng);
+  EXPECT_EQ(parts(map), 1);
+  const double free_share = free_cells(map) / (601.0 * 601.0);
+  EXPECT_GT(free_share, 0.3);
+  EXPECT_LT(free_share, 0.6);
+}
+
+TEST(GridGenerators, MazesReachAThousandCellsASide) {
+  Rng rng(3);
+  const GridMap map = braided_maze_map(1001, 1001, 1, rng);
+  EXPECT_EQ(parts(map), 1);
+  EXPECT_EQ(dead_ends(map), 0);
+}
+
 }  // namespace
 }  // namespace graphdrl

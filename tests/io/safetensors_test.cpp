@@ -75,6 +75,17 @@ TEST(Safetensors, RefusesWhatLiesOutsideOverlapsOrOverflows) {
   EXPECT_THAT(error_for(std::string(8, '\xff')), HasSubstr("not a whole safetensors file"));
 }
 
+TEST(Safetensors, SurvivesDeepNesting) {
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  EXPECT_THAT(error_for(file_with(R"({"a":{"dtype":"F32","shape":[)" + deep + R"(],"data_offsets":[0,4]}})", 4)),
+              HasSubstr("not a safetensors file"));
+  EXPECT_THAT(error_for(file_with(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[)" + deep + ",4]}})", 4)),
+              HasSubstr("not a safetensors file"));
+  const std::string shape = std::string(90, '[') + std::string(90, ']');
+  EXPECT_THAT(error_for(file_with(R"({"a":{"dtype":"F32","shape":[)" + shape + R"(],"data_offsets":[0,4]}})", 4)),
+              HasSubstr("whole numbers, got '" + std::string(60, '[')));
+}
+
 TEST(Safetensors, EveryTruncationIsAnErrorAndNoDamageACrash) {
   const TemporaryFolder folder;
   const std::vector<float> a = {1, 2, 3};

@@ -114,6 +114,16 @@ TEST(PolicyFile, IsRefusedWhenItIsAnothersOrDamaged) {
   EXPECT_THAT(error_for(replaced("\"network\"", "\"notwork\"")), HasSubstr("not a policy file"));
   EXPECT_THAT(error_for(""), HasSubstr("not a safetensors file"));
 
+  // A description of its own in a file that is whole otherwise.
+  const auto described = [&](const std::string& description) {
+    write_safetensors(folder / "own", parameters.views(), {{"network", description}});
+    return error_of([&] { read_policy_file(folder / "own"); });
+  };
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  EXPECT_THAT(described("{\"kind\":" + deep + "}"), HasSubstr("nested too deeply"));
+  EXPECT_THAT(described("{\"kind\""), HasSubstr("not JSON: expected a network's description"));
+  EXPECT_THAT(described("{\"actions\":[[7]]}"), HasSubstr("got '[[7]]'"));
+
   PaperParameters broken = parameters;
   broken.tensor("fc1.bias")[3] = NAN;
   write_policy_file(folder / "nan", broken);

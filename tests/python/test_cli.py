@@ -128,6 +128,11 @@ def bad_inputs(tmp_path, policy):
     (tmp_path / "graph.json").write_text(json.dumps(graph))
     graph["links"][0]["weight"] = -2
     (tmp_path / "cost.json").write_text(json.dumps(graph))
+    graph["links"][0]["weight"] = 2
+    graph["nodes"][1]["prize"] = -1
+    (tmp_path / "prize.json").write_text(json.dumps(graph))
+    (tmp_path / "labels.json").write_text('{"nodes": [{"id": "dock"}, {"id": "shelf"}], "links": []}')
+    (tmp_path / "deep.json").write_text('{"nodes":[' + "[" * 10**6 + "]" * 10**6 + '],"links":[]}')
     evaluate_nearest = ["evaluate", "--policy", "nearest"]
     return [
         ([*evaluate_nearest, "--maps", tmp_path / "strange.txt"], "strange.txt:1:3: strange character"),
@@ -177,13 +182,21 @@ def bad_inputs(tmp_path, policy):
         (["maps", "show", "paper:z"], "no such map"),
         (["maps", "show", "paper:a", "--walk", ""], "--walk"),
         (["maps", "show", "paper:a", "--svg", "/dev/null"], "something else stands there"),
-        ([*evaluate_nearest, "--seed", "-1"], "--seed"),
+        ([*evaluate_nearest, "--seed", "-1"], "--seed: expected a whole number from 0 to 18446744073709551615, got '-1'"),
+        (["plan", "paper:a", "--budget", "9", "--seed", "1.5"], "--seed: expected a whole number"),
+        (["maps", "generate", "maze", "--size", "9", "--seed", "-1"], "--seed: expected a whole number"),
+        (["plan", tmp_path / "labels.json", "--budget", "9", "--start", "1"], "start outside the map: expected a label of the map, or #N for node id N, got '1'"),
+        (["plan", "paper:a", "--budget", "9", "--start", "#25"], "start outside the map: expected a valid node's id or row,col"),
+        (["plan", tmp_path / "deep.json", "--budget", "9"], "nested too deeply"),
+        (["plan", tmp_path / "prize.json", "--budget", "9"], "nodes[1]: bad \"prize\""),
+        (["maps", "generate", "maze", "--size", "9", "--blocked", "0.2", "--out", tmp_path / "new"], "for the family obstacles"),
+        (["maps", "generate", "obstacles", "--size", "9", "--blocked", "0.95", "--out", tmp_path / "new"], "expected 0 to 0.9"),
         ([*evaluate_nearest, "--budget", "1e12"], "bad budget"),
         ([*evaluate_nearest, "--\x1b[31m"], "\\x1b[31m"),
         (["train", "--resume", ""], "--resume"),
         (["train", "--out", ""], "--out"),
         (["train", "--start", "3", "--out", tmp_path / "new"], "start on an obstacle"),
-        (["train", "--seed", "-1", "--out", tmp_path / "new"], "--seed"),
+        (["train", "--seed", "-1", "--out", tmp_path / "new"], "--seed: expected a whole number"),
         (["maps"], "subcommand"),
         ([], "subcommand"),
         (["train", "--episodes", "0", "--out", tmp_path / "new"], "--episodes"),
@@ -360,6 +373,32 @@ def test_plan_gives_a_walk_its_bound_and_the_documented_keys(run, trained):
         assert other["coverage"] <= other["upper_bound"] and other["cost"] <= 17
         assert other["gap"] == pytest.approx(other["upper_bound"] - other["coverage"])
     assert plan(run, "paper:a", "--budget", "0")["walk"] == [0]
+
+
+def test_numbers_stand_on_one_line_in_json(run):
+    text = run("graphdrl", "plan", "paper:a", "--budget", "3", "--policy", "dfs", "--json").stdout
+    assert '  "walk": [0, 1, 2, 1],\n  "walk_cells": [[0, 0], [0, 1], [0, 2], [0, 1]],\n' in text or '  "walk": [0, 1, 2],\n' in text
+    assert text.startswith('{\n  "map": "paper:a",\n') and text.endswith("\n}\n")
+    rows = run("graphdrl", "evaluate", "--policy", "nearest", "--maps", "paper:a", "--json").stdout
+    assert re.search(r'\n {6}"ci95": \[[0-9.]+, [0-9.]+\],\n', rows) and '\n  "rows": [\n    {\n' in rows
+
+
+def test_nodes_are_named_by_labels_or_ids(run, tmp_path):
+    nodes = [{"id": name} for name in ("dock", "0", "shelf")]
+    (tmp_path / "labels.json").write_text(json.dumps({"nodes": nodes, "links": []}))
+    for start, node in {"dock": 0, "0": 1, "#0": 0, "#2": 2}.items():
+        assert plan(run, tmp_path / "labels.json", "--budget", "1", "--start", start)["start"] == node
+    assert plan(run, "paper:a", "--budget", "1", "--start", "#1")["start"] == 1
+    assert "#N" in run("graphdrl", "plan", "--help").stdout
+
+
+def test_obstacles_have_the_share_asked_for(run, tmp_path):
+    command = ["maps", "generate", "obstacles", "--size", "101", "--blocked", "0.2", "--count", "1", "--out", tmp_path / "worlds"]
+    assert run("graphdrl", *command).returncode == 0
+    (file,) = (tmp_path / "worlds").iterdir()
+    assert file.name == "obstacles-101-0000.txt"
+    info = json.loads(run("graphdrl", "maps", "info", file, "--json").stdout)
+    assert info["connected"] and abs(info["valid_nodes"] - 0.8 * 101 * 101) < 200
 
 
 def test_plan_takes_any_graph_and_says_what_cannot_be_reached(run, tmp_path):

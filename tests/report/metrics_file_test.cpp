@@ -29,5 +29,14 @@ TEST(MetricsFile, DropsWhatComesAfterTheCheckpointItResumesFrom) {
   EXPECT_EQ(read_file(folder / "m"), first);
 }
 
+TEST(MetricsFile, DropsLinesNestedTooDeeply) {
+  const TemporaryFolder folder;
+  const std::string first = "{\"episode\":1}\n";
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  write_file(folder / "m", first + "{\"episode\":2,\"loss\":" + deep + "}\n{\"episode\":3}\n");
+  { MetricsFile file(folder / "m", "episode", 9); }
+  EXPECT_EQ(read_file(folder / "m"), first);
+}
+
 }  // namespace
 }  // namespace graphdrl

@@ -79,9 +79,7 @@ void add_evaluate_command(CLI::App& app) {
           ->capture_default_str();
   command->add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
       ->excludes(episodes);
-  command->add_option("--seed", options->comparison.seed, "For the starts and for random policies")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_seed_option(*command, options->comparison.seed, "For the starts and for random policies");
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
   command->callback([options] { evaluate(*options); });

@@ -90,7 +90,7 @@ const std::map<std::string, Split> kSplits = {
 // The file of a world: a grid as text, a graph as node-link JSON.
 std::string format_world(const World& world) {
   if (world.is_grid()) return format_ascii_map(*world.map());
-  return format_node_link({.graph = world.graph(), .blocked = world.blocked(), .labels = {}});
+  return format_node_link(world.graph(), world.blocked());
 }
 
 void generate_maps(const GenerateOptions& options) {
@@ -163,9 +163,7 @@ void add_maps_command(CLI::App& app) {
       ->type_name("SHARE");
   generate->add_flag("--weighted", making->spec.weighted, "Edges of different costs; graphs only");
   generate->add_flag("--directed", making->spec.directed, "Three edges in ten lead one way only; graphs only");
-  CLI::Option* const seed = generate->add_option("--seed", making->seed, "The same seed gives the same worlds")
-                                ->check(CLI::NonNegativeNumber)
-                                ->capture_default_str();
+  CLI::Option* const seed = add_seed_option(*generate, making->seed, "The same seed gives the same worlds");
   generate
       ->add_option("--split", making->split, "Instead: the first worlds of a frozen split, train, validation or test")
       ->check(CLI::IsMember(kSplits))

@@ -197,7 +197,7 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
 End parse_end(const World& world, const std::string& text) {
   if (text == "anywhere") return End::anywhere();
   if (text == "start") return End::at_start();
-  return End::at(parse_start(world, text));
+  return End::at(parse_node(world, text, "end"));
 }
 
 void plan(const PlanOptions& options) {
@@ -208,7 +208,7 @@ void plan(const PlanOptions& options) {
                  .where = "--time-limit"});
   }
   const World world = load_one_world(options.map);
-  const NodeId start = options.start.empty() ? world.valid_nodes().front() : parse_start(world, options.start);
+  const NodeId start = options.start.empty() ? world.valid_nodes().front() : parse_node(world, options.start, "start");
   const Task task{.view = world,
                   .start = start,
                   .budget = Budget::parse(options.budget).cost_in(world),
@@ -233,7 +233,11 @@ void add_plan_command(CLI::App& app) {
   command->add_option("--budget", options->budget, "What the walk may cost, or a multiple of the valid nodes, as 1.1x")
       ->required()
       ->type_name("B");
-  command->add_option("--start", options->start, "A node id, a label, or row,col; the default is the first valid node")
+  command
+      ->add_option(
+          "--start", options->start,
+          "A node id, or row,col on a grid; in a graph with labels a label, or #N for node id N. The default is the "
+          "first valid node")
       ->check(not_empty())
       ->type_name("S");
   command->add_option("--end", options->end, "Where the walk must end: anywhere, start, or a node as for --start")
@@ -249,9 +253,7 @@ void add_plan_command(CLI::App& app) {
           "--time-limit", options->time_limit_s,
           "Seconds for a plan, the bound included: beams search wider and wider, others stop with what they have")
       ->type_name("S");
-  command->add_option("--seed", options->seed, "For random policies")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_seed_option(*command, options->seed, "For random policies");
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
   command->callback([options, policy] {

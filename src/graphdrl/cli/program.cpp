@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <limits>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
@@ -12,12 +15,43 @@ namespace graphdrl {
 namespace {
 
 constexpr std::size_t kLongestMessage = 800;  // characters: CLI11's repeat a bad line however long it is
+constexpr int kJsonIndent = 2;
 
 int complain(const CLI::App& app, std::string_view message, int status) {
   message = message.substr(0, message.find('\n'));
   const char* const rest = message.size() > kLongestMessage ? " …" : "";
   print_diagnostic(fmt::format("{}: {}{}\n", app.get_name(), escaped(message.substr(0, kLongestMessage)), rest));
   return status;
+}
+
+// Numbers, or arrays of them in any depth.
+bool is_numbers(const Json& json) {
+  return json.is_array() &&
+         std::all_of(json.begin(), json.end(), [](const Json& item) { return item.is_number() || is_numbers(item); });
+}
+
+void append_json(const Json& json, int indent, std::string& text) {
+  if (json.empty() || !json.is_structured()) {
+    text += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return;
+  }
+  if (is_numbers(json)) {
+    for (const char c : json.dump()) {
+      text += c;
+      if (c == ',') text += ' ';
+    }
+    return;
+  }
+  const auto start_line = [&](int columns) { text.append(1, '\n').append(static_cast<std::size_t>(columns), ' '); };
+  text += json.is_object() ? '{' : '[';
+  for (auto item = json.begin(); item != json.end(); ++item) {
+    if (item != json.begin()) text += ',';
+    start_line(indent + kJsonIndent);
+    if (json.is_object()) text += Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+    append_json(*item, indent + kJsonIndent, text);
+  }
+  start_line(indent);
+  text += json.is_object() ? '}' : ']';
 }
 
 }  // namespace
@@ -63,6 +97,22 @@ void add_threads_option(CLI::App& command) {
       ->type_name("N");
 }
 
+CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
+  return command.add_option("--seed", seed, help)->check(whole_number())->capture_default_str();
+}
+
+CLI::Validator whole_number() {
+  const auto check = [](const std::string& text) {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc() && rest == end) return std::string();
+    return fmt::format("expected a whole number from 0 to {}, got {}", std::numeric_limits<std::uint64_t>::max(),
+                       in_quotes(text));
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator not_empty() {
   return CLI::Validator([](std::string& text) { return std::string(text.empty() ? "expected a value, got ''" : ""); },
                         "");
@@ -78,8 +128,14 @@ void print_text(const std::string& text) {
   }
 }
 
+std::string format_json(const Json& json) {
+  std::string text;
+  append_json(json, 0, text);
+  return text + '\n';
+}
+
 void print_json(const Json& json) {
-  print_text(json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  print_text(format_json(json));
 }
 
 }  // namespace graphdrl

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -20,8 +21,17 @@ int run_program(CLI::App& app, int argc, char** argv);
 // Adds --threads and has parallel_for use that many; the default is one per processor.
 void add_threads_option(CLI::App& command);
 
+// Adds --seed, a whole number from 0 to 2^64 - 1; `help` says what it is for.
+CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help);
+
+// Refuses what is no whole number from 0 to 2^64 - 1.
+CLI::Validator whole_number();
+
 // Refuses an empty text, such as that of a variable nobody set.
 CLI::Validator not_empty();
+
+// A document over several lines, but arrays of numbers, and arrays of such, on one line each.
+std::string format_json(const Json& json);
 
 // One JSON document on standard output.
 void print_json(const Json& json);

@@ -11,8 +11,8 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/io/json.h"
 #include "graphdrl/train/options.h"
-#include "graphdrl/train/shallow_json.h"
 #include "graphdrl/train/trainer.h"
 
 namespace graphdrl {
@@ -40,7 +40,8 @@ class ConfigReader : public CLI::ConfigTOML {
     std::stringstream content;
     content << input.rdbuf();
     if ((content >> std::ws).peek() != '{') return CLI::ConfigTOML::from_config(content);
-    const Json json = parse_shallow_json(content.str(), "--config");
+    require_shallow_json(content.str(), "--config");
+    const Json json = Json::parse(content.str(), nullptr, /*allow_exceptions=*/false);
     if (!json.is_object()) throw Error({.what = "the configuration is not valid JSON", .where = "--config"});
     std::vector<CLI::ConfigItem> result;
     for (const auto& [key, value] : json.items()) {
@@ -102,7 +103,7 @@ class OptionFlags {
   }
 
   static CLI::Option* add_flag(CLI::App& app, const std::string& name, std::uint64_t& value, const char* help) {
-    return app.add_option(name, value, help)->check(CLI::NonNegativeNumber);
+    return app.add_option(name, value, help)->check(whole_number());
   }
   static CLI::Option* add_flag(CLI::App& app, const std::string& name, bool& value, const char* help) {
     return app.add_flag(name, value, help);

@@ -1,5 +1,7 @@
 #include "graphdrl/env/load_worlds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -9,17 +11,30 @@
 namespace graphdrl {
 namespace {
 
-// -1 where the text is no whole number from 0 up.
+// kNoNode where the text is no whole number from 0 up.
 int parse_index(std::string_view text) {
-  int value = -1;
+  int value = kNoNode;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? value : -1;
+  return error == std::errc() && end == text.data() + text.size() ? value : kNoNode;
 }
 
-World make_world(NamedMap named) {
-  if (auto* const grid = std::get_if<GridMap>(&named.map)) return World(named.name, std::move(*grid));
+World make_world(NamedMap&& named) {
+  if (auto* const grid = std::get_if<GridMap>(&named.map)) return World(std::move(named.name), std::move(*grid));
   auto& map = std::get<GraphMap>(named.map);
-  return World(named.name, std::move(map.graph), std::move(map.blocked), std::move(map.labels));
+  return World(std::move(named.name), std::move(map.graph), std::move(map.blocked), std::move(map.labels),
+               std::move(map.prizes));
+}
+
+// kNoNode where the text names no node.
+NodeId find_node(const World& world, std::string_view text) {
+  const auto label = std::find(world.labels().begin(), world.labels().end(), text);
+  if (label != world.labels().end()) return static_cast<NodeId>(label - world.labels().begin());
+  if (text.starts_with('#')) return parse_index(text.substr(1));
+  if (!world.labels().empty()) return kNoNode;
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || !world.is_grid()) return parse_index(text);
+  const Cell cell{parse_index(text.substr(0, comma)), parse_index(text.substr(comma + 1))};
+  return world.map()->contains(cell) ? world.map()->node(cell) : kNoNode;
 }
 
 }  // namespace
@@ -36,23 +51,17 @@ World load_one_world(const std::string& source) {
   return make_world(load_map(source));
 }
 
-NodeId parse_start(const World& world, std::string_view text) {
-  NodeId node = parse_index(text);
-  const auto label = std::find(world.labels().begin(), world.labels().end(), text);
-  if (label != world.labels().end()) node = static_cast<NodeId>(label - world.labels().begin());
-  const std::size_t comma = text.find(',');
-  if (comma != std::string_view::npos && world.is_grid()) {
-    const Cell cell{parse_index(text.substr(0, comma)), parse_index(text.substr(comma + 1))};
-    if (world.map()->contains(cell)) node = world.map()->node(cell);
-  }
-  if (node < 0 || node >= world.node_count() || world.is_blocked(node)) {
-    const bool obstacle = node >= 0 && node < world.node_count();
-    throw Error({.what = obstacle ? "start on an obstacle" : "start outside the map",
-                 .expected = "a valid node's id, label or row,col",
-                 .got = in_quotes(text),
-                 .where = world.name()});
-  }
-  return node;
+NodeId parse_node(const World& world, std::string_view text, std::string_view role) {
+  const NodeId node = find_node(world, text);
+  const bool there = node >= 0 && node < world.graph().node_count();
+  if (there && !world.is_blocked(node)) return node;
+  std::string expected = "a valid node's id";
+  if (world.is_grid()) expected += " or row,col";
+  if (!world.labels().empty()) expected = "a label of the map, or #N for node id N";
+  throw Error({.what = fmt::format("{} {}", role, there ? "on an obstacle" : "outside the map"),
+               .expected = expected,
+               .got = in_quotes(text),
+               .where = world.name()});
 }
 
 }  // namespace graphdrl

@@ -1,4 +1,4 @@
-// Worlds and starts as users name them.
+// Worlds and their nodes as users name them.
 #pragma once
 
 #include <string>
@@ -15,7 +15,9 @@ std::vector<World> load_worlds(const std::vector<std::string>& sources);
 // The one map of a source. Throws Error where it holds more.
 World load_one_world(const std::string& source);
 
-// A start: a node's label, a node id, or "row,col" on a grid. Throws Error where it is no valid node of the world.
-NodeId parse_start(const World& world, std::string_view text);
+// A node as users name it: its label, "#5" for the node id 5, and in a world without labels also "5", or "row,col" on a
+// grid. A number is no node id in a world with labels, where it could be either. Throws Error, with the node's role
+// ("start"), where it is no valid node of the world.
+NodeId parse_node(const World& world, std::string_view text, std::string_view role);
 
 }  // namespace graphdrl

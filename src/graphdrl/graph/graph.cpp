@@ -150,6 +150,24 @@ Graph Graph::without(const std::vector<bool>& dropped) const {
   return graph;
 }
 
+Graph Graph::induced(std::span<const NodeId> nodes, std::vector<NodeId>& number) const {
+  for (std::size_t i = 0; i < nodes.size(); ++i) number[nodes[i]] = static_cast<NodeId>(i);
+  Graph graph;
+  graph.kind_ = kind_;
+  graph.offsets_.reserve(nodes.size() + 1);
+  for (const NodeId node : nodes) {
+    for (std::int64_t i = offsets_[node]; i < offsets_[node + 1]; ++i) {
+      if (number[neighbours_[i]] == kNoNode) continue;
+      graph.neighbours_.push_back(number[neighbours_[i]]);
+      if (weighted()) graph.costs_.push_back(costs_[i]);
+    }
+    graph.close_node();
+  }
+  for (const NodeId node : nodes) number[node] = kNoNode;
+  graph.settle_costs();
+  return graph;
+}
+
 Graph Graph::from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> neighbours) {
   Graph graph;
   graph.offsets_ = std::move(offsets);

@@ -40,6 +40,10 @@ class Graph {
   // The same nodes, without the edges that touch a dropped one. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;
 
+  // The given nodes, numbered in the order given, and the edges among them. REQUIRES: none is given twice. number:
+  // memory for the numbering, [N], kNoNode everywhere before and after.
+  Graph induced(std::span<const NodeId> nodes, std::vector<NodeId>& number) const;
+
   // Undirected, every edge of cost 1. offsets: [N + 1], where each node's neighbours begin, and the end. REQUIRES: each
   // edge stands in both lists, once.
   static Graph from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> neighbours);

@@ -34,6 +34,7 @@ GridMap parse_ascii_map(std::string_view text, const std::string& source) {
     throw Error({.what = "the map has too many cells for 32-bit node ids", .where = source});
   }
   GridMap map{.rows = static_cast<int>(rows.size()), .cols = static_cast<int>(cols), .blocked = {}};
+  map.blocked.reserve(rows.size() * cols);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     for (std::size_t col = 0; col < rows[row].size(); ++col) {
       const char c = rows[row][col];
@@ -61,6 +62,7 @@ GridMap parse_ascii_map(std::string_view text, const std::string& source) {
 
 std::string format_ascii_map(const GridMap& map) {
   std::string text;
+  text.reserve(map.blocked.size() + static_cast<std::size_t>(map.rows));
   for (int row = 0; row < map.rows; ++row) {
     for (int col = 0; col < map.cols; ++col) text += map.blocked[map.node({row, col})] ? '#' : '.';
     text += '\n';

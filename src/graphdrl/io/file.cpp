@@ -42,6 +42,7 @@ std::string read_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail(path, "cannot read the file", errno);
   std::string content;
+  if (const auto size = std::filesystem::file_size(path, ignored); !ignored) content.reserve(size);
   char block[65'536];
   while (stream.read(block, sizeof block) || stream.gcount() > 0) {
     content.append(block, static_cast<std::size_t>(stream.gcount()));

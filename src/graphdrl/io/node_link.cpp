@@ -3,154 +3,339 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
-#include <unordered_map>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/io/node_ids.h"
 
 namespace graphdrl {
 namespace {
 
 using nlohmann::json;
 
-json parse_json(std::string_view text, const std::string& source) {
-  try {
-    return json::parse(text);
-  } catch (const json::parse_error& error) {
-    const std::string_view before = text.substr(0, error.byte);
-    throw Error({.what = "not JSON",
-                 .expected = "a graph in node-link form",
-                 .where = fmt::format("{}:{}", source, 1 + std::count(before.begin(), before.end(), '\n'))});
-  } catch (const json::out_of_range&) {
-    throw Error({.what = "a number too large", .where = source});
-  }
+// The keys of nodes and links that are looked at.
+enum Key { kId, kBlocked, kPrize, kSource, kTarget, kWeight, kCost, kKeyCount };
+constexpr std::array<const char*, kKeyCount> kKeyNames = {"id",     "blocked", "prize", "source",
+                                                          "target", "weight",  "cost"};
+
+// What stands under one of these keys.
+struct Field {
+  enum class Kind { kMissing, kBoolean, kWhole, kNegative, kFraction, kText, kOther };
+
+  Kind kind = Kind::kMissing;
+  bool truth = false;       // kBoolean
+  std::uint64_t whole = 0;  // kWhole
+  double number = 0;        // kWhole, kNegative, kFraction
+  std::string text = {};    // kText, kNegative
+
+  bool given() const { return kind != Kind::kMissing; }
+  bool is_id() const { return kind == Kind::kWhole || kind == Kind::kNegative || kind == Kind::kText; }
+  bool is_number() const { return kind == Kind::kWhole || kind == Kind::kNegative || kind == Kind::kFraction; }
+};
+
+// The item with this index of the array under a key of the document, or with kNoIndex what stands under the key itself:
+// for an error's message.
+constexpr std::int64_t kNoIndex = -1;
+json value_at(std::string_view text, const std::string& key, std::int64_t index) {
+  const int wanted_depth = index == kNoIndex ? 1 : 2;
+  json found;
+  bool under_key = false;
+  std::int64_t at = 0;
+  const auto keep = [&](int depth, json::parse_event_t event, json& parsed) {
+    using Event = json::parse_event_t;
+    if (event == Event::key && depth == 1) under_key = parsed == key;
+    const bool whole = event == Event::value || event == Event::object_end || event == Event::array_end;
+    if (!whole || !under_key || depth != wanted_depth) return true;
+    if (index == kNoIndex || at++ == index) found = std::move(parsed);
+    return false;  // so that the document is never held whole
+  };
+  [[maybe_unused]] const json rest = json::parse(text, keep, /*allow_exceptions=*/false);
+  return found;
 }
 
-// What a graph is read from, with the errors about it.
+// Takes nlohmann's SAX events (their names are the library's) and fills the arrays of a graph.
 class Reader {
  public:
-  Reader(const json& document, const std::string& source) : document_(document), source_(source) {}
+  Reader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
   GraphMap read();
 
+  bool null() { return value({.kind = Field::Kind::kOther}); }
+  bool boolean(bool truth) { return value({.kind = Field::Kind::kBoolean, .truth = truth}); }
+  bool number_integer(json::number_integer_t number) {
+    if (number >= 0) return number_unsigned(static_cast<json::number_unsigned_t>(number));  // -0
+    return value(
+        {.kind = Field::Kind::kNegative, .number = static_cast<double>(number), .text = std::to_string(number)});
+  }
+  bool number_unsigned(json::number_unsigned_t number) {
+    return value({.kind = Field::Kind::kWhole, .whole = number, .number = static_cast<double>(number)});
+  }
+  bool number_float(json::number_float_t number, const std::string&) {
+    return value({.kind = Field::Kind::kFraction, .number = number});
+  }
+  bool string(std::string& text) { return value({.kind = Field::Kind::kText, .text = std::move(text)}); }
+  bool binary(json::binary_t&) { return value({.kind = Field::Kind::kOther}); }
+  bool key(std::string& name);
+  bool start_object(std::size_t);
+  bool end_object();
+  bool start_array(std::size_t);
+  bool end_array();
+  bool parse_error(std::size_t position, const std::string&, const json::exception& complaint) {
+    throw json_error(complaint, position, text_, source_, "a graph in node-link form");
+  }
+
  private:
-  [[noreturn]] void fail(const std::string& place, const std::string& what, const std::string& expected,
-                         const json& got) const {
-    throw Error({.what = what,
-                 .expected = expected,
-                 .got = in_quotes(got.dump(-1, ' ', false, json::error_handler_t::replace)),
-                 .where = source_ + ": " + place});
-  }
+  // What the events are directly inside of; deeper ones are skipped.
+  enum Depth { kOutside, kDocument, kArray, kItem };
+  // The document's keys that are looked at.
+  enum class Section { kOther, kDirected, kNodes, kLinks };
 
-  // The array under the first of two keys that is there.
-  const json& array(const char* key, const char* other) const {
-    const char* const found = document_.contains(key) ? key : other;
-    const auto value = document_.find(found);
-    if (value == document_.end()) throw Error({.what = fmt::format("no key \"{}\"", key), .where = source_});
-    if (!value->is_array()) fail(found, "bad value", "an array", *value);
-    return *value;
-  }
+  Section section_of(const std::string& key);
+  bool value(Field field);
+  void enter();
+  void read_node();
+  void read_link();
+  NodeId node_at(Key key) const;
+  double number_at(Key key) const;
 
-  // A node's id as text: 5 and "5" are the same.
-  std::string id_of(const json& item, const char* key, const std::string& place) const {
-    const auto id = item.is_object() ? item.find(key) : item.end();
-    if (!item.is_object() || id == item.end())
-      fail(place, fmt::format("no key \"{}\"", key), "an object with it", item);
-    if (id->is_string()) return id->get<std::string>();
-    if (!id->is_number_integer()) fail(place, fmt::format("bad \"{}\"", key), "a text or a whole number", *id);
-    return id->dump();
-  }
+  // Throws Error about the item at hand, showing what stands under its key, or it whole where it has no such key.
+  [[noreturn]] void fail(const std::string& what, const std::string& expected, Key key = kKeyCount) const;
+  // Throws Error about what stands under the document's key at hand.
+  [[noreturn]] void fail_at_key(const std::string& expected) const;
 
-  void read_nodes();
-  std::vector<Edge> read_edges() const;
-
-  const json& document_;
+  std::string_view text_;
   const std::string& source_;
+
+  bool links_only_ = false;  // the second reading
+  int depth_ = kOutside;
+  std::string section_key_;
+  Section section_ = Section::kOther;
+  bool reading_ = false;    // inside of an array whose items are looked at
+  std::int64_t index_ = 0;  // in that array
+  Key key_ = kKeyCount;     // of the item at hand
+  std::array<Field, kKeyCount> fields_;
+
+  bool directed_ = false;
+  bool nodes_read_ = false;
+  bool links_read_ = false;
+  std::string nodes_key_;  // "nodes" once met
+  std::string links_key_;  // "links", or "edges" where there are no links
+  NodeIds ids_;
   GraphMap map_;
-  std::unordered_map<std::string, NodeId> node_of_;
+  std::vector<Edge> edges_;
 };
 
-void Reader::read_nodes() {
-  const json& nodes = array("nodes", "nodes");
-  bool plain = true;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const std::string place = fmt::format("nodes[{}]", i);
-    std::string id = id_of(nodes[i], "id", place);
-    if (!node_of_.try_emplace(id, static_cast<NodeId>(i)).second)
-      fail(place, "an id used twice", "ids all different", nodes[i]);
-    const auto blocked = nodes[i].find("blocked");
-    if (blocked != nodes[i].end() && !blocked->is_boolean()) fail(place, "bad \"blocked\"", "true or false", *blocked);
-    map_.blocked.push_back(blocked != nodes[i].end() && blocked->get<bool>());
-    plain = plain && id == std::to_string(i);
-    map_.labels.push_back(std::move(id));
-  }
-  if (plain) map_.labels.clear();
+void Reader::fail(const std::string& what, const std::string& expected, Key key) const {
+  require_shallow_json(text_, source_);
+  json item = value_at(text_, section_key_, index_);
+  const bool under_key = key != kKeyCount && item.is_object() && item.contains(kKeyNames[key]);
+  throw Error({.what = what,
+               .expected = expected,
+               .got = shortened(under_key ? item[kKeyNames[key]] : item),
+               .where = fmt::format("{}: {}[{}]", source_, section_key_, index_)});
 }
 
-std::vector<Edge> Reader::read_edges() const {
-  const bool links = document_.contains("links");
-  const json& items = array("links", "edges");
-  std::vector<Edge> edges;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const std::string place = fmt::format("{}[{}]", links ? "links" : "edges", i);
-    const auto end = [&](const char* key) {
-      const auto node = node_of_.find(id_of(items[i], key, place));
-      if (node == node_of_.end()) fail(place, fmt::format("\"{}\" is no node", key), "the id of a node", items[i][key]);
-      return node->second;
-    };
-    Edge edge{.a = end("source"), .b = end("target")};
-    const char* const cost_key = items[i].contains("weight") ? "weight" : "cost";
-    if (const auto cost = items[i].find(cost_key); cost != items[i].end()) {
-      const bool positive = cost->is_number() && cost->get<double>() > 0;
-      if (!positive) fail(place, fmt::format("bad \"{}\"", cost_key), "a positive number", *cost);
-      edge.cost = cost->get<double>();
-    }
-    edges.push_back(edge);
+void Reader::fail_at_key(const std::string& expected) const {
+  require_shallow_json(text_, source_);
+  throw Error({.what = "bad value",
+               .expected = expected,
+               .got = shortened(value_at(text_, section_key_, kNoIndex)),
+               .where = fmt::format("{}: {}", source_, section_key_)});
+}
+
+Reader::Section Reader::section_of(const std::string& key) {
+  if (links_only_) return key == links_key_ ? Section::kLinks : Section::kOther;
+  if (key == "directed") return Section::kDirected;
+  const bool links = key == "links" || (key == "edges" && links_key_ != "links");
+  if (key != "nodes" && !links) return Section::kOther;
+  if (key == (links ? links_key_ : nodes_key_)) {
+    throw Error({.what = fmt::format("the key \"{}\" stands twice", key), .where = source_});
   }
-  return edges;
+  (links ? links_key_ : nodes_key_) = key;
+  if (!links) return Section::kNodes;
+  edges_.clear();
+  links_read_ = false;
+  return Section::kLinks;
+}
+
+bool Reader::key(std::string& name) {
+  if (depth_ == kDocument) {
+    section_ = section_of(name);
+    section_key_ = std::move(name);
+  } else if (depth_ == kItem && reading_) {
+    key_ = static_cast<Key>(std::find(kKeyNames.begin(), kKeyNames.end(), name) - kKeyNames.begin());
+  }
+  return true;
+}
+
+bool Reader::value(Field field) {
+  if (depth_ == kOutside) {
+    throw Error({.what = "not a graph in node-link form", .expected = "an object", .where = source_});
+  }
+  if (depth_ == kDocument && section_ == Section::kDirected) {
+    if (field.kind != Field::Kind::kBoolean) fail_at_key("true or false");
+    directed_ = field.truth;
+  } else if (depth_ == kDocument && section_ != Section::kOther) {
+    fail_at_key("an array");
+  } else if (depth_ == kArray && reading_) {
+    fail(fmt::format("no key \"{}\"", kKeyNames[section_ == Section::kNodes ? kId : kSource]), "an object with it");
+  } else if (depth_ == kItem && reading_ && key_ != kKeyCount) {
+    fields_[key_] = std::move(field);
+  }
+  return true;
+}
+
+// Goes one level deeper.
+void Reader::enter() {
+  if (++depth_ > kMaxJsonDepth) require_shallow_json(text_, source_);
+}
+
+bool Reader::start_object(std::size_t) {
+  if (depth_ == kArray && reading_) {
+    for (Field& field : fields_) field.kind = Field::Kind::kMissing;
+  } else if (depth_ != kOutside) {
+    value({.kind = Field::Kind::kOther});
+  }
+  enter();
+  return true;
+}
+
+bool Reader::end_object() {
+  if (--depth_ != kArray || !reading_) return true;
+  if (section_ == Section::kNodes) {
+    read_node();
+  } else {
+    read_link();
+  }
+  ++index_;
+  return true;
+}
+
+bool Reader::start_array(std::size_t) {
+  const bool items = depth_ == kDocument && (section_ == Section::kNodes || section_ == Section::kLinks);
+  if (!items) value({.kind = Field::Kind::kOther});
+  if (items) {
+    reading_ = section_ == Section::kNodes || nodes_read_;
+    index_ = 0;
+  }
+  enter();
+  return true;
+}
+
+bool Reader::end_array() {
+  if (--depth_ != kDocument || !reading_) return true;
+  (section_ == Section::kNodes ? nodes_read_ : links_read_) = true;
+  reading_ = false;
+  return true;
+}
+
+NodeId Reader::node_at(Key key) const {
+  const Field& field = fields_[key];
+  if (!field.given()) fail(fmt::format("no key \"{}\"", kKeyNames[key]), "an object with it");
+  if (!field.is_id()) fail(fmt::format("bad \"{}\"", kKeyNames[key]), "a text or a whole number", key);
+  const NodeId node = field.kind == Field::Kind::kWhole ? ids_.find(field.whole) : ids_.find(field.text);
+  if (node == kNoNode) fail(fmt::format("\"{}\" is no node", kKeyNames[key]), "the id of a node", key);
+  return node;
+}
+
+// A cost or a prize; 1 unless given.
+double Reader::number_at(Key key) const {
+  const Field& field = fields_[key];
+  if (!field.given()) return 1;
+  if (!field.is_number() || !(field.number >= 0)) {
+    fail(fmt::format("bad \"{}\"", kKeyNames[key]), "a number from 0 up", key);
+  }
+  return field.number + 0.0;  // turns -0 into 0
+}
+
+void Reader::read_node() {
+  const Field& id = fields_[kId];
+  if (!id.given()) fail("no key \"id\"", "an object with it");
+  if (!id.is_id()) fail("bad \"id\"", "a text or a whole number", kId);
+  const bool fresh = id.kind == Field::Kind::kWhole ? ids_.add(id.whole) : ids_.add(id.text);
+  if (!fresh) fail("an id used twice", "ids all different");
+  const Field& blocked = fields_[kBlocked];
+  if (blocked.given() && blocked.kind != Field::Kind::kBoolean) fail("bad \"blocked\"", "true or false", kBlocked);
+  map_.blocked.push_back(blocked.given() && blocked.truth);
+  const double prize = number_at(kPrize);
+  if (prize == 1 && map_.prizes.empty()) return;
+  map_.prizes.resize(map_.blocked.size(), 1.0);
+  map_.prizes.back() = prize;
+}
+
+void Reader::read_link() {
+  const NodeId source = node_at(kSource);
+  edges_.push_back({source, node_at(kTarget), number_at(fields_[kWeight].given() ? kWeight : kCost)});
 }
 
 GraphMap Reader::read() {
-  if (!document_.is_object())
-    throw Error({.what = "not a graph in node-link form", .expected = "an object", .where = source_});
-  const auto directed = document_.find("directed");
-  if (directed != document_.end() && !directed->is_boolean()) fail("directed", "bad value", "true or false", *directed);
-  const bool one_way = directed != document_.end() && directed->get<bool>();
-  read_nodes();
+  json::sax_parse(text_, this);
+  if (!nodes_read_) throw Error({.what = "no key \"nodes\"", .where = source_});
   if (std::find(map_.blocked.begin(), map_.blocked.end(), false) == map_.blocked.end()) {
     throw Error({.what = "the graph has no free node", .where = source_});
   }
-  map_.graph = Graph::from_edges(static_cast<NodeId>(map_.blocked.size()), read_edges(),
-                                 one_way ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  if (links_key_.empty()) throw Error({.what = "no key \"links\"", .where = source_});
+  if (!links_read_) {
+    links_only_ = true;
+    json::sax_parse(text_, this);
+  }
+  map_.graph = Graph::from_edges(ids_.count(), edges_, directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  map_.labels = ids_.take_labels();
   return std::move(map_);
+}
+
+void append_text(std::string& text, const std::string& value) {
+  text += json(value).dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 }  // namespace
 
 GraphMap parse_node_link(std::string_view text, const std::string& source) {
-  const json document = parse_json(text, source);
-  return Reader(document, source).read();
+  return Reader(text, source).read();
 }
 
 std::string format_node_link(const GraphMap& map) {
-  const auto id_of = [&](NodeId node) { return map.labels.empty() ? json(node) : json(map.labels[node]); };
-  nlohmann::ordered_json document;
-  document["directed"] = map.graph.directed();
-  document["multigraph"] = false;
-  document["graph"] = nlohmann::ordered_json::object();
-  document["nodes"] = nlohmann::ordered_json::array();
-  for (NodeId node = 0; node < map.graph.node_count(); ++node) {
-    nlohmann::ordered_json item{{"id", id_of(node)}};
-    if (map.blocked[node]) item["blocked"] = true;
-    document["nodes"].push_back(std::move(item));
+  return format_node_link(map.graph, map.blocked, map.labels, map.prizes);
+}
+
+std::string format_node_link(const Graph& graph, const std::vector<bool>& blocked, std::span<const std::string> labels,
+                             std::span<const double> prizes) {
+  std::string text;
+  const auto append_id = [&](NodeId node) {
+    if (labels.empty()) {
+      text += fmt::format_int(node).c_str();
+    } else {
+      append_text(text, labels[node]);
+    }
+  };
+  text += fmt::format(R"({{"directed":{},"multigraph":false,"graph":{{}},"nodes":[)", graph.directed());
+  for (NodeId node = 0; node < graph.node_count(); ++node) {
+    text += node == 0 ? R"({"id":)" : R"(,{"id":)";
+    append_id(node);
+    if (blocked[node]) text += R"(,"blocked":true)";
+    if (!prizes.empty() && prizes[node] != 1) text += R"(,"prize":)" + json(prizes[node]).dump();
+    text += '}';
   }
-  document["links"] = nlohmann::ordered_json::array();
-  for (const Edge& edge : map.graph.edges()) {
-    nlohmann::ordered_json item{{"source", id_of(edge.a)}, {"target", id_of(edge.b)}};
-    if (map.graph.weighted()) item["weight"] = edge.cost;
-    document["links"].push_back(std::move(item));
+  text += R"(],"links":[)";
+  bool first = true;
+  for (NodeId node = 0; node < graph.node_count(); ++node) {
+    for (int i = 0; i < graph.degree(node); ++i) {
+      const NodeId next = graph.neighbours(node)[i];
+      if (!graph.directed() && next < node) continue;  // stands with the other node
+      text += first ? R"({"source":)" : R"(,{"source":)";
+      first = false;
+      append_id(node);
+      text += R"(,"target":)";
+      append_id(next);
+      if (graph.weighted()) text += R"(,"weight":)" + json(graph.cost(node, i)).dump();
+      text += '}';
+    }
   }
-  return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  text += "]}\n";
+  return text;
 }
 
 }  // namespace graphdrl

@@ -1,6 +1,7 @@
 // Any graph as JSON in node-link form, as networkx's node_link_data and D3 write it.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,17 +15,24 @@ struct GraphMap {
   Graph graph;
   std::vector<bool> blocked;        // [N]
   std::vector<std::string> labels;  // [N], what the file calls its nodes; empty where that is 0 … N - 1
+  std::vector<double> prizes = {};  // [N], what a first visit is worth; empty where that is 1 everywhere
 };
 
-// {"directed": false, "nodes": [{"id": "a", "blocked": true}, …], "links": [{"source": "a", "target": "b", "weight":
-// 2}, …]}
+// {"directed": false, "nodes": [{"id": "a", "blocked": true, "prize": 3}, …], "links": [{"source": "a", "target": "b",
+// "weight": 2}, …]}
 //
-// Nodes are numbered as they stand. Ids are numbers or texts; `blocked` is false and `weight`, also called `cost`, is 1
-// unless given; `links` may be called `edges`; other keys are skipped. Throws Error, naming `source` and the place, on
-// anything else, on an id used twice and on a graph without a free node.
+// Nodes are numbered as they stand. Ids are whole numbers or texts; `blocked` is false, `prize` and `weight`, also
+// called `cost`, are 1 unless given, and at least 0; `links` may be called `edges`; keys may stand in any order, others
+// are skipped. Throws Error, naming `source` and the place, on anything else, on an id used twice and on a graph
+// without a free node. Cost: linear, without a copy of the document; the text is read twice where links stand before
+// nodes.
 GraphMap parse_node_link(std::string_view text, const std::string& source);
 
 // Ends with a line break.
 std::string format_node_link(const GraphMap& map);
+
+// The same of parts that stand elsewhere; labels and prizes may be empty.
+std::string format_node_link(const Graph& graph, const std::vector<bool>& blocked,
+                             std::span<const std::string> labels = {}, std::span<const double> prizes = {});
 
 }  // namespace graphdrl

@@ -10,6 +10,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
@@ -46,7 +47,7 @@ Safetensors::Entry parse_entry(const std::string& source, const std::string& nam
   std::size_t size = dtype_size(entry.dtype);
   if (size == 0) fail(source, tensor + " has an unknown type", "F32, I64 and the like", in_quotes(entry.dtype));
   for (const Json& extent : json["shape"]) {
-    if (!extent.is_number_unsigned()) fail(source, tensor + " has a strange shape", "whole numbers", extent.dump());
+    if (!extent.is_number_unsigned()) fail(source, tensor + " has a strange shape", "whole numbers", shortened(extent));
     const auto value = extent.get<std::uint64_t>();
     if (value > INT64_MAX || __builtin_mul_overflow(size, value, &size)) {
       fail(source, tensor + " has a size that overflows");
@@ -55,12 +56,12 @@ Safetensors::Entry parse_entry(const std::string& source, const std::string& nam
   }
   const Json& offsets = json["data_offsets"];
   if (!offsets[0].is_number_unsigned() || !offsets[1].is_number_unsigned()) {
-    fail(source, tensor + " has strange data_offsets", "whole numbers", offsets.dump());
+    fail(source, tensor + " has strange data_offsets", "whole numbers", shortened(offsets));
   }
   entry.begin = offsets[0].get<std::size_t>();
   entry.end = offsets[1].get<std::size_t>();
   if (entry.begin > entry.end || entry.end > data_size) {
-    fail(source, tensor + " lies outside the file", fmt::format("offsets up to {}", data_size), offsets.dump());
+    fail(source, tensor + " lies outside the file", fmt::format("offsets up to {}", data_size), shortened(offsets));
   }
   if (entry.end - entry.begin != size) {
     fail(source, tensor + " has the wrong length", fmt::format("{} bytes for {}", size, format_shape(entry.shape)),
@@ -111,8 +112,7 @@ Safetensors Safetensors::parse(std::string content, const std::string& source) {
     fail(source, "not a whole safetensors file", fmt::format("a header of {} bytes", length),
          fmt::format("{} bytes", content.size() - sizeof length));
   }
-  const char* text = content.data() + sizeof length;
-  const Json header = Json::parse(text, text + length, nullptr, /*allow_exceptions=*/false);
+  const Json header = parse_json_or_discard(std::string_view(content).substr(sizeof length, length));
   if (!header.is_object()) fail(source, "not a safetensors file", "a header in JSON");
 
   Safetensors file;

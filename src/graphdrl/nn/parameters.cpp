@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
@@ -122,7 +123,7 @@ nlohmann::json policy_description(const Safetensors& file) {
   if (text == file.metadata().end()) {
     throw Error({.what = "not a policy file", .expected = "a network's description", .where = file.source()});
   }
-  return nlohmann::json::parse(text->second, nullptr, /*allow_exceptions=*/false);
+  return parse_json(text->second, file.source(), "a network's description in the metadata");
 }
 
 void require_description(const Safetensors& file, const nlohmann::json& expected,
@@ -130,10 +131,10 @@ void require_description(const Safetensors& file, const nlohmann::json& expected
   const auto found = policy_description(file);
   for (const auto& [key, value] : expected.items()) {
     if (found.is_object() && found.contains(key) && found[key] == value) continue;
-    const std::string got = found.is_object() && found.contains(key) ? found[key].dump() : "nothing";
+    const std::string got = found.is_object() && found.contains(key) ? shortened(found[key], 200) : "nothing";
     throw Error({.what = fmt::format("policy of another network: {} differs", in_quotes(key)),
                  .expected = value.dump(),
-                 .got = in_quotes(got, 200),
+                 .got = got,
                  .where = file.source()});
   }
   if (file.entries().size() != specs.size()) {

@@ -76,7 +76,7 @@ std::size_t trainable_count(const std::vector<TensorSpec>& specs);
 void write_policy_file(const std::filesystem::path& path, const ParameterBuffer& parameters,
                        const nlohmann::json& description);
 
-// The description in a policy file. Throws Error where there is none.
+// The description in a policy file. Throws Error where there is none, or no JSON.
 nlohmann::json policy_description(const Safetensors& file);
 
 // Throws Error where the file's description is not the one expected, or its tensors are not as many as the specs.

@@ -7,6 +7,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
@@ -17,7 +18,7 @@ std::string lines_until(const std::filesystem::path& path, const std::string& co
   if (!std::filesystem::exists(path)) return kept;
   std::istringstream content(read_file(path));
   for (std::string line; std::getline(content, line);) {
-    const auto json = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
+    const auto json = parse_json_or_discard(line);
     if (!json.is_object() || !json.contains(counter) || !json[counter].is_number()) break;
     if (json[counter].get<std::int64_t>() > done) break;
     kept += line + '\n';

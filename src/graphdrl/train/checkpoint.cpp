@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/train/shallow_json.h"
+#include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
@@ -80,7 +80,8 @@ std::int64_t Checkpoint::size_of(const std::string& name) const {
 Json Checkpoint::json(const std::string& key) const {
   const auto text = file_.metadata().find(key);
   if (text == file_.metadata().end()) fail("not a whole checkpoint", in_quotes(key) + " in its metadata");
-  return parse_shallow_json(text->second, source());
+  require_shallow_json(text->second, source());
+  return nlohmann::ordered_json::parse(text->second, nullptr, /*allow_exceptions=*/false);
 }
 
 TrainingProgress Checkpoint::progress() const {

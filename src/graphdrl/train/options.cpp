@@ -4,11 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/budget.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/train/shallow_json.h"
+#include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
@@ -191,7 +192,9 @@ void write_config(const std::filesystem::path& path, const TrainOptions& options
 
 TrainOptions read_config(const std::filesystem::path& path) {
   const std::string source = path.string();
-  const Json json = parse_shallow_json(read_file(path), source);
+  const std::string text = read_file(path);
+  require_shallow_json(text, source);
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object()) throw Error({.what = "not a run's configuration", .where = source});
   std::size_t known = 0;
   const auto read = [&](const char* key, auto& value) {

@@ -44,7 +44,7 @@ std::vector<World> checked(std::vector<World> worlds, const TrainOptions& option
                    .got = fmt::format("{:g}", budget),
                    .where = world.name()});
     }
-    if (options.start != kRandomStart) parse_start(world, options.start);
+    if (options.start != kRandomStart) parse_node(world, options.start, "start");
   }
   return worlds;
 }
@@ -88,7 +88,7 @@ bool PaperRecipe::run_unit(TrainingProgress& progress, const std::function<bool(
 void PaperRecipe::begin_episode() {
   const int world = worlds_.size() == 1 ? 0 : static_cast<int>(rng_.below(static_cast<std::uint32_t>(worlds_.size())));
   if (options_.start != kRandomStart) {
-    begin_episode_at(world, parse_start(worlds_[world], options_.start));
+    begin_episode_at(world, parse_node(worlds_[world], options_.start, "start"));
     return;
   }
   const auto nodes = worlds_[world].valid_nodes();
