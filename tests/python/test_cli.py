@@ -163,12 +163,15 @@ def bad_inputs(tmp_path, policy):
         (["plan", "paper:a"], "--budget"),
         (["plan", "paper", "--budget", "9"], "expected one map, got 10"),
         (["plan", "paper:a", "--budget", "nan"], "bad budget"),
-        (["plan", "paper:a", "--budget", "1e9"], "too large to plan for"),
+        (["plan", "paper:a", "--budget", "1e9"], "a walk has at most 100000000 steps"),
         (["plan", "paper:a", "--budget", "9", "--start", "3"], "start on an obstacle"),
         (["plan", "paper:a", "--budget", "9", "--start", "99"], "start outside the map"),
         (["plan", "paper:a", "--budget", "9", "--policy", "beam:0"], "bad beam width"),
         (["plan", "paper:a", "--budget", "9", "--policy", "beam:many"], "bad beam width"),
-        (["plan", "paper:a", "--budget", "9", "--policy", "dfs", "--time-limit", "1"], "a time limit is for policies that search"),
+        (["plan", "paper:a", "--budget", "9", "--end", "3"], "end on an obstacle"),
+        (["plan", "paper:a", "--budget", "9", "--end", "home"], "end outside the map"),
+        (["plan", "paper:a", "--budget", "2", "--end", "24", "--policy", "exact"], "the end cannot be reached within the budget"),
+        (["plan", "paper:a", "--budget", "9", "--end", "start"], "explorer cannot plan for an end yet"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "-1"], "bad time limit"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "nan"], "bad time limit"),
         (["plan", tmp_path / "cost.json", "--budget", "9"], "links[0]: bad \"weight\""),
@@ -341,7 +344,7 @@ def test_network_policies_take_large_maps(run, trained, tmp_path):
 
 def test_bench_gives_the_documented_keys_and_one_signature(run):
     first = json.loads(run("graphdrl", "bench", "--json").stdout)
-    assert list(first) == "signature env_steps_per_s move_ms learning_step_ms products_share gemm_share".split()
+    assert list(first) == "signature signature_learned env_steps_per_s move_ms learning_step_ms products_share gemm_share".split()
     shares = ["products_share", "gemm_share"] if WITH_TORCH else ["products_share"]
     for key in ("env_steps_per_s", "learning_step_ms", *shares):
         assert list(first[key]) == ["1", "2"] and all(value > 0 for value in first[key].values())
@@ -358,7 +361,7 @@ def plan(run, *arguments):
     return json.loads(process.stdout)
 
 
-PLAN_KEYS = "map policy start budget walk walk_cells visited coverage cost upper_bound gap optimal unreachable elapsed_s".split()
+PLAN_KEYS = "map policy start end budget walk walk_cells visited coverage cost upper_bound max_visited gap optimal unreachable elapsed_s".split()
 
 
 def test_plan_gives_a_walk_its_bound_and_the_documented_keys(run, trained):
@@ -381,6 +384,25 @@ def test_numbers_stand_on_one_line_in_json(run):
     assert text.startswith('{\n  "map": "paper:a",\n') and text.endswith("\n}\n")
     rows = run("graphdrl", "evaluate", "--policy", "nearest", "--maps", "paper:a", "--json").stdout
     assert re.search(r'\n {6}"ci95": \[[0-9.]+, [0-9.]+\],\n', rows) and '\n  "rows": [\n    {\n' in rows
+
+
+def test_plan_ends_where_it_must_and_collects_prizes(run, tmp_path):
+    home = plan(run, "paper:a", "--budget", "12", "--end", "start", "--policy", "exact")
+    assert home["end"] == home["walk"][0] == home["walk"][-1] == 0 and home["optimal"] and home["cost"] <= 12
+    for policy in ("random", "random-walk"):
+        assert plan(run, "paper:a", "--budget", "12", "--end", "0,2", "--policy", policy)["walk"][-1] == 2
+    nodes = [{"id": name, "prize": prize} for name, prize in {"dock": 0, "a": 1, "b": 5, "c": 2}.items()]
+    links = [{"source": a, "target": b} for a, b in (("dock", "a"), ("dock", "b"), ("b", "c"))]
+    (tmp_path / "prizes.json").write_text(json.dumps({"nodes": nodes, "links": links}))
+    best = plan(run, tmp_path / "prizes.json", "--budget", "3", "--policy", "exact", "--end", "dock")
+    assert best["walk_labels"] == ["dock", "b", "dock"] and best["prize"] == 5 and best["max_prize"] == 5
+    assert best["upper_bound"] == 100 * 5 / 8 and best["coverage"] == 50 and "max_visited" not in best
+
+
+def test_every_policy_plans_within_a_time_limit(run):
+    for policy in ("dfs", "nearest", "random", "beam:4", "explorer", "guided:4", "exact"):
+        result = plan(run, "paper:c", "--budget", "20", "--policy", policy, "--time-limit", "0.05")
+        assert result["visited"] <= result["max_visited"] <= 18 and result["cost"] <= 20
 
 
 def test_nodes_are_named_by_labels_or_ids(run, tmp_path):

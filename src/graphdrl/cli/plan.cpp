@@ -121,7 +121,7 @@ std::string name_of(const World& world, NodeId node) {
 
 Json to_json(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
   const Plan& plan = answer.plan;
-  const double percent = 100.0 / world.total_prize();
+  const auto percent = [&](double prize) { return 100.0 * prize / world.total_prize(); };
   Json json;
   json["map"] = world.name();
   json["policy"] = policy_label(options.policy);
@@ -144,13 +144,13 @@ Json to_json(const World& world, const Task& task, const PlanOptions& options, c
   json["coverage"] = 100.0 * plan.visited / world.valid_count();
   if (world.has_prizes()) json["prize"] = plan.prize;
   json["cost"] = plan.cost;
-  json["upper_bound"] = percent * plan.bound;
+  json["upper_bound"] = percent(plan.bound);
   if (world.has_prizes()) {
     json["max_prize"] = plan.bound;
   } else {
     json["max_visited"] = answer.max_visited;
   }
-  json["gap"] = percent * (plan.bound - plan.prize);
+  json["gap"] = percent(plan.bound - plan.prize);
   json["optimal"] = plan.optimal;
   json["unreachable"] = answer.unreachable;
   json["elapsed_s"] = answer.elapsed_s;
@@ -159,13 +159,13 @@ Json to_json(const World& world, const Task& task, const PlanOptions& options, c
 
 std::string format_bound(const World& world, const Answer& answer) {
   const Plan& plan = answer.plan;
-  const double percent = 100.0 / world.total_prize();
+  const auto percent = [&](double prize) { return 100.0 * prize / world.total_prize(); };
   const char* const what = world.has_prizes() ? "is worth more" : "visits more";
   if (plan.optimal) return fmt::format("optimal  no walk {}\n", what);
   const std::string most =
       world.has_prizes() ? fmt::format("{:g}", plan.bound) : fmt::format("{} nodes", answer.max_visited);
   return fmt::format("bound    no walk {} than {}, {:.1f} %: the gap is {:.1f} points\n", what, most,
-                     percent * plan.bound, percent * (plan.bound - plan.prize));
+                     percent(plan.bound), percent(plan.bound - plan.prize));
 }
 
 std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
