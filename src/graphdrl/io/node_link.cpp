@@ -29,7 +29,6 @@ struct Field {
   bool truth = false;       // kBoolean
   std::uint64_t whole = 0;  // kWhole
   double number = 0;        // kWhole, kNegative, kFraction
-  std::string text = {};    // kText, kNegative
 
   bool given() const { return kind != Kind::kMissing; }
   bool is_id() const { return kind == Kind::kWhole || kind == Kind::kNegative || kind == Kind::kText; }
@@ -67,8 +66,7 @@ class Reader {
   bool boolean(bool truth) { return value({.kind = Field::Kind::kBoolean, .truth = truth}); }
   bool number_integer(json::number_integer_t number) {
     if (number >= 0) return number_unsigned(static_cast<json::number_unsigned_t>(number));  // -0
-    return value(
-        {.kind = Field::Kind::kNegative, .number = static_cast<double>(number), .text = std::to_string(number)});
+    return value({.kind = Field::Kind::kNegative, .number = static_cast<double>(number)}, std::to_string(number));
   }
   bool number_unsigned(json::number_unsigned_t number) {
     return value({.kind = Field::Kind::kWhole, .whole = number, .number = static_cast<double>(number)});
@@ -76,7 +74,7 @@ class Reader {
   bool number_float(json::number_float_t number, const std::string&) {
     return value({.kind = Field::Kind::kFraction, .number = number});
   }
-  bool string(std::string& text) { return value({.kind = Field::Kind::kText, .text = std::move(text)}); }
+  bool string(std::string& text) { return value({.kind = Field::Kind::kText}, text); }
   bool binary(json::binary_t&) { return value({.kind = Field::Kind::kOther}); }
   bool key(std::string& name);
   bool start_object(std::size_t);
@@ -94,7 +92,7 @@ class Reader {
   enum class Section { kOther, kDirected, kNodes, kLinks };
 
   Section section_of(const std::string& key);
-  bool value(Field field);
+  bool value(const Field& field, std::string_view text = {});
   void enter();
   void read_node();
   void read_link();
@@ -117,6 +115,7 @@ class Reader {
   std::int64_t index_ = 0;  // in that array
   Key key_ = kKeyCount;     // of the item at hand
   std::array<Field, kKeyCount> fields_;
+  std::array<std::string, kKeyCount> texts_;  // of kText and kNegative; kept from item to item, with their memory
 
   bool directed_ = false;
   bool nodes_read_ = false;
@@ -171,7 +170,7 @@ bool Reader::key(std::string& name) {
   return true;
 }
 
-bool Reader::value(Field field) {
+bool Reader::value(const Field& field, std::string_view text) {
   if (depth_ == kOutside) {
     throw Error({.what = "not a graph in node-link form", .expected = "an object", .where = source_});
   }
@@ -183,7 +182,8 @@ bool Reader::value(Field field) {
   } else if (depth_ == kArray && reading_) {
     fail(fmt::format("no key \"{}\"", kKeyNames[section_ == Section::kNodes ? kId : kSource]), "an object with it");
   } else if (depth_ == kItem && reading_ && key_ != kKeyCount) {
-    fields_[key_] = std::move(field);
+    fields_[key_] = field;
+    texts_[key_] = text;
   }
   return true;
 }
@@ -236,7 +236,7 @@ NodeId Reader::node_at(Key key) const {
   const Field& field = fields_[key];
   if (!field.given()) fail(fmt::format("no key \"{}\"", kKeyNames[key]), "an object with it");
   if (!field.is_id()) fail(fmt::format("bad \"{}\"", kKeyNames[key]), "a text or a whole number", key);
-  const NodeId node = field.kind == Field::Kind::kWhole ? ids_.find(field.whole) : ids_.find(field.text);
+  const NodeId node = field.kind == Field::Kind::kWhole ? ids_.find(field.whole) : ids_.find(texts_[key]);
   if (node == kNoNode) fail(fmt::format("\"{}\" is no node", kKeyNames[key]), "the id of a node", key);
   return node;
 }
@@ -255,7 +255,7 @@ void Reader::read_node() {
   const Field& id = fields_[kId];
   if (!id.given()) fail("no key \"id\"", "an object with it");
   if (!id.is_id()) fail("bad \"id\"", "a text or a whole number", kId);
-  const bool fresh = id.kind == Field::Kind::kWhole ? ids_.add(id.whole) : ids_.add(id.text);
+  const bool fresh = id.kind == Field::Kind::kWhole ? ids_.add(id.whole) : ids_.add(texts_[kId]);
   if (!fresh) fail("an id used twice", "ids all different");
   const Field& blocked = fields_[kBlocked];
   if (blocked.given() && blocked.kind != Field::Kind::kBoolean) fail("bad \"blocked\"", "true or false", kBlocked);
