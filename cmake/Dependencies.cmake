@@ -1,5 +1,5 @@
 # Everything GraphDRL stands on, from Debian 12's packages. What each is for: README.md.
-find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(TBB REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)

@@ -2,30 +2,81 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <vector>
 
 namespace graphdrl {
 namespace {
 
-TEST(ParallelFor, RunsEveryTaskOnceWithAnyNumberOfThreads) {
-  for (const int count : {1, 2, 5}) {
+class ParallelFor : public testing::Test {
+ protected:
+  ~ParallelFor() override { set_threads(1); }
+};
+
+TEST_F(ParallelFor, RunsEveryTaskOnceWithAnyNumberOfThreads) {
+  for (const int count : {1, 2, 5, 300}) {
     set_threads(count);
-    std::vector<int> runs(100);
-    parallel_for(100, [&](int task) { ++runs[task]; });
-    EXPECT_EQ(runs, std::vector<int>(100, 1));
+    EXPECT_EQ(threads(), count);
+    for (const Schedule schedule : {Schedule::kDynamic, Schedule::kFixed}) {
+      for (const int tasks : {0, 1, 2, 100}) {
+        std::vector<int> runs(tasks);
+        parallel_for(tasks, [&](int task) { ++runs[task]; }, schedule);
+        EXPECT_EQ(runs, std::vector<int>(tasks, 1));
+      }
+    }
   }
-  set_threads(1);
 }
 
-TEST(ParallelFor, HandsAnExceptionToTheCaller) {
+TEST_F(ParallelFor, RunsTasksSideBySide) {
   set_threads(2);
-  EXPECT_THROW(parallel_for(10,
-                            [](int task) {
-                              if (task == 7) throw std::runtime_error("seven");
-                            }),
-               std::runtime_error);
-  set_threads(1);
+  std::atomic<int> here = 0;
+  parallel_for(2, [&](int) {
+    ++here;
+    while (here != 2) std::this_thread::yield();
+  });
+  EXPECT_EQ(here, 2);
+}
+
+TEST_F(ParallelFor, RunsInOrderOnTheCallersThreadWithinATask) {
+  set_threads(3);
+  std::vector<std::vector<int>> order(20);
+  parallel_for(20, [&](int task) {
+    const std::thread::id caller = std::this_thread::get_id();
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      parallel_for(3, [&](int inner) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        order[task].push_back(inner);
+      });
+    }
+  });
+  EXPECT_EQ(order, std::vector<std::vector<int>>(20, {0, 1, 2, 0, 1, 2}));
+}
+
+TEST_F(ParallelFor, HandsTheFirstExceptionToTheCaller) {
+  for (const int count : {1, 4}) {
+    set_threads(count);
+    for (int repeat = 0; repeat < 50; ++repeat) {
+      try {
+        parallel_for(100, [](int task) {
+          if (task % 10 == 7) throw std::runtime_error(std::to_string(task));
+        });
+        FAIL() << "no exception";
+      } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "7");
+      }
+    }
+  }
+}
+
+TEST_F(ParallelFor, GoesOnAfterAnException) {
+  set_threads(2);
+  EXPECT_THROW(parallel_for(10, [](int) { throw std::runtime_error("any"); }), std::runtime_error);
+  std::vector<int> runs(10);
+  parallel_for(10, [&](int task) { ++runs[task]; });
+  EXPECT_EQ(runs, std::vector<int>(10, 1));
 }
 
 }  // namespace

@@ -23,8 +23,10 @@ constexpr int kRounds = 15;
 // OpenBLAS's product on one thread, in builds that have it.
 GemmFunction openblas_product() {
 #ifdef GRAPHDRL_OPENBLAS
-  openblas_set_num_threads(1);
   return [](const GemmShape& shape, const float* a, const float* b, float* c) {
+    // OpenBLAS on OpenMP keeps its number of threads by the thread that calls it.
+    thread_local const bool alone = (openblas_set_num_threads(1), true);
+    static_cast<void>(alone);
     cblas_sgemm(CblasRowMajor, shape.a_transposed ? CblasTrans : CblasNoTrans, CblasNoTrans, shape.m, shape.n, shape.k,
                 1.0f, a, shape.lda, b, shape.n, 0.0f, c, shape.ldc);
   };
