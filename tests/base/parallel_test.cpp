@@ -23,7 +23,8 @@ TEST_F(ParallelFor, RunsEveryTaskOnceWithAnyNumberOfThreads) {
     for (const Schedule schedule : {Schedule::kDynamic, Schedule::kFixed}) {
       for (const int tasks : {0, 1, 2, 100}) {
         std::vector<int> runs(tasks);
-        parallel_for(tasks, [&](int task) { ++runs[task]; }, schedule);
+        parallel_for(
+            tasks, [&](int task) { ++runs[task]; }, schedule);
         EXPECT_EQ(runs, std::vector<int>(tasks, 1));
       }
     }

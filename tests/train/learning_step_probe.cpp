@@ -35,9 +35,9 @@ struct Probe {
   std::vector<std::int64_t> first_nodes = {0};
 };
 
-// Adds a random transition; `encoder` is that of its world.
-void add_transition(const PaperFeatureEncoder& encoder, bool terminal, Rng& rng, Probe& probe) {
-  const View& world = encoder.view();
+// Adds a random transition.
+void add_transition(const World& world, bool terminal, Rng& rng, Probe& probe) {
+  const PaperFeatureEncoder encoder(world);
   PaperMinibatch& batch = probe.batch;
   Episode episode(world, {.budget = 40, .end_at_full_coverage = true});
   episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
@@ -70,8 +70,7 @@ int write_probe(const std::string& out, bool double_dqn) {
   PaperMinibatch& batch = probe.batch;
   batch.graphs.clear();
   for (int i = 0; i < 32; ++i) {
-    const PaperFeatureEncoder encoder(worlds[static_cast<std::size_t>(i) % worlds.size()]);
-    add_transition(encoder, /*terminal=*/i % 7 == 3, rng, probe);
+    add_transition(worlds[static_cast<std::size_t>(i) % worlds.size()], /*terminal=*/i % 7 == 3, rng, probe);
   }
 
   PaperKernelLearner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);

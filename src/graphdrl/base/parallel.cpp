@@ -60,8 +60,12 @@ class Loop {
  private:
   // ThreadSanitizer does not see how libtbb.so orders a loop's begin, its tasks and its end.
 #ifdef __SANITIZE_THREAD__
-  void publish() { __tsan_release(this); }
-  void receive() { __tsan_acquire(this); }
+  void publish() {
+    __tsan_release(this);
+  }
+  void receive() {
+    __tsan_acquire(this);
+  }
 #else
   static void publish() {}
   static void receive() {}

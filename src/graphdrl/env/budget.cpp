@@ -30,10 +30,11 @@ double Budget::cost_in(const World& world) const {
   const double cost = relative_ ? std::floor(value_ * world.valid_count() + 1e-9) * mean_cost : value_;
   const double most = static_cast<double>(kMaxSteps) * mean_cost;
   if (cost <= most) return cost;
-  throw Error({.what = "bad budget",
-               .expected = fmt::format("at most {:g}: a walk has at most {} steps, and stays in memory", most, kMaxSteps),
-               .got = fmt::format("{} = {:g}", text_, cost),
-               .where = world.name()});
+  throw Error(
+      {.what = "bad budget",
+       .expected = fmt::format("at most {:g}: a walk has at most {} steps, and stays in memory", most, kMaxSteps),
+       .got = fmt::format("{} = {:g}", text_, cost),
+       .where = world.name()});
 }
 
 }  // namespace graphdrl

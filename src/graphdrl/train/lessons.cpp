@@ -93,10 +93,8 @@ void visit(Lesson& walk, const FirstVisit& first) {
 }
 
 Task rest_of(const Lesson& walk) {
-  return {.view = walk.at->world,
-          .start = walk.position,
-          .budget = std::max(0.0, walk.spendable),
-          .visited = walk.visited};
+  return {
+      .view = walk.at->world, .start = walk.position, .budget = std::max(0.0, walk.spendable), .visited = walk.visited};
 }
 
 LessonWorld::LessonWorld(const WorldSpec& spec, std::uint64_t of_seed)
