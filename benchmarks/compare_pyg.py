@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Our learning step beside the same step in PyTorch Geometric and in plain PyTorch.
 
-The same weights, the same replay buffer of states of the paper's map a and the same number of threads; the three take turns
-within one run, and their losses must agree before anything is timed. A step is: sample 32 transitions, build the batch, both
-forward passes, loss, backward, clamp, Adam, soft update. benchmarks/compare_pyg sets up and runs this.
+The same weights, the same replay buffer of states of the paper's map a and the same number of threads; the three take
+turns within one run, and their losses must agree before anything is timed. A step is: sample 32 transitions, build the
+batch, both forward passes, loss, backward, clamp, Adam, soft update. benchmarks/compare_pyg sets up and runs this.
 """
 
 import argparse
@@ -34,7 +34,9 @@ def read_safetensors(path):
     header.pop("__metadata__", None)
     data = content[8 + length :]
     return {
-        name: torch.from_numpy(numpy.frombuffer(data[slice(*e["data_offsets"])], DTYPES[e["dtype"]]).reshape(e["shape"]).copy())
+        name: torch.from_numpy(
+            numpy.frombuffer(data[slice(*e["data_offsets"])], DTYPES[e["dtype"]]).reshape(e["shape"]).copy()
+        )
         for name, e in header.items()
     }
 
@@ -85,7 +87,9 @@ class Peer:
     def __init__(self, conv, t):
         self.t = t
         self.online = Network(conv)
-        weights = {name: tensor for name, tensor in t.items() if name.split(".")[0] in dict(self.online.named_children())}
+        weights = {
+            name: tensor for name, tensor in t.items() if name.split(".")[0] in dict(self.online.named_children())
+        }
         missing = self.online.load_state_dict(weights, strict=False).missing_keys
         assert all(name.endswith("num_batches_tracked") for name in missing), missing
         self.target = copy.deepcopy(self.online).eval()
@@ -150,7 +154,9 @@ class GeometricPeer(Peer):
 
 class Ours:
     def __init__(self, program, file, threads):
-        self.process = subprocess.Popen([program, file, str(threads)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            [program, file, str(threads)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
         self.ask("learn 1")
 
     def ask(self, line):

@@ -24,7 +24,13 @@ def evaluate(run, *arguments):
 
 
 def test_help_and_version(run):
-    for arguments in (["--help"], ["evaluate", "--help"], ["maps", "show", "--help"], ["train", "--help"], ["inspect", "--help"]):
+    for arguments in (
+        ["--help"],
+        ["evaluate", "--help"],
+        ["maps", "show", "--help"],
+        ["train", "--help"],
+        ["inspect", "--help"],
+    ):
         process = run("graphdrl", *arguments)
         assert process.returncode == 0
         assert "Usage:" in process.stdout
@@ -33,7 +39,9 @@ def test_help_and_version(run):
 
 def test_evaluate_gives_the_documented_keys(run, trained):
     folder, _ = trained
-    result = evaluate(run, "--maps", "paper", "--policy", folder / "policy.safetensors", "--policy", "nearest", "--all-starts")
+    result = evaluate(
+        run, "--maps", "paper", "--policy", folder / "policy.safetensors", "--policy", "nearest", "--all-starts"
+    )
     assert len(result["rows"]) == 20
     row = result["rows"][10]
     assert list(row) == "map policy valid_nodes budget episodes mean std best ci95 optimum paper".split()
@@ -49,12 +57,21 @@ def test_evaluate_gives_the_documented_keys(run, trained):
 def test_evaluate_takes_ones_own_maps(run, tmp_path):
     (tmp_path / "mine.txt").write_text("....\n.##.\n....\n")
     (tmp_path / "other.txt").write_text("..\n")
-    result = evaluate(run, "--maps", tmp_path, "--maps", "paper:a", "--policy", "nearest", "--budget", "1.1x", "--episodes", "3")
+    result = evaluate(
+        run, "--maps", tmp_path, "--maps", "paper:a", "--policy", "nearest", "--budget", "1.1x", "--episodes", "3"
+    )
     assert [row["map"] for row in result["rows"]] == ["mine", "other", "paper:a"]
     assert [row["budget"] for row in result["rows"]] == [11, 2, 20]
     assert all(row["paper"] is None for row in result["rows"])
     default = evaluate(run, "--maps", tmp_path / "other.txt")
-    assert [line["policy"] for line in default["overall"]] == ["random", "dfs", "nearest", "explorer", "guided", "exact"]
+    assert [line["policy"] for line in default["overall"]] == [
+        "random",
+        "dfs",
+        "nearest",
+        "explorer",
+        "guided",
+        "exact",
+    ]
     assert default["rows"][0]["episodes"] == 30
     single = evaluate(run, "--maps", tmp_path / "other.txt", "--policy", "nearest", "--episodes", "1")["rows"][0]
     assert single["std"] is None and single["ci95"] is None
@@ -82,13 +99,22 @@ def test_inspect_shows_tensors_features_and_q_values(run, trained):
     assert [step["position"] for step in steps] == [0, 1, 1, 2]
     assert steps[0]["legal"] == [False, False, True, True]
     assert len(steps[0]["q"]) == 4 and len(steps[0]["features"]) == 25
-    assert steps[2]["features"][1] == [0, 1, 0, 2, 1, 2, 1]  # row, column, obstacle, visits, wall, unvisited neighbours, current
+    assert steps[2]["features"][1] == [
+        0,
+        1,
+        0,
+        2,
+        1,
+        2,
+        1,
+    ]  # row, column, obstacle, visits, wall, unvisited neighbours, current
     assert "240678 parameters" in run("graphdrl", "inspect", policy).stdout
 
 
 def test_maps_info_and_show(run, tmp_path):
     assert json.loads(run("graphdrl", "maps", "info", "paper:a", "--json").stdout) == {
-        "map": "paper:a", "nodes": 25, "edges": 40, "directed": False, "weighted": False, "valid_nodes": 19, "components": 1,
+        "map": "paper:a", "nodes": 25, "edges": 40, "directed": False, "weighted": False, "valid_nodes": 19,
+        "components": 1,
         "connected": True,
     }  # fmt: skip
     process = run("graphdrl", "maps", "show", "paper:a", "--walk", "0,1,2", "--svg", tmp_path / "a.svg")
@@ -113,7 +139,9 @@ def bad_inputs(tmp_path, policy):
     (tmp_path / "shape.safetensors").write_bytes(content.replace(b"[192,64]", b"[64,192]", 1))
     (tmp_path / "type.safetensors").write_bytes(content.replace(b'"F32"', b'"I32"', 1))
     (tmp_path / "long.safetensors").write_bytes(b"\xff" * 8 + content[8:])
-    (tmp_path / "other.safetensors").write_bytes(content.replace(b'\\"kind\\":\\"paper\\"', b'\\"kind\\":\\"other\\"', 1))
+    (tmp_path / "other.safetensors").write_bytes(
+        content.replace(b'\\"kind\\":\\"paper\\"', b'\\"kind\\":\\"other\\"', 1)
+    )
     (tmp_path / "config.json").write_text('{"episodes": 3, "speed": 9}')
     (tmp_path / "broken.json").write_text('{"episodes": ')
     deep = "[" * 1_000_000 + "]" * 1_000_000
@@ -170,11 +198,14 @@ def bad_inputs(tmp_path, policy):
         (["plan", "paper:a", "--budget", "9", "--policy", "beam:many"], "bad beam width"),
         (["plan", "paper:a", "--budget", "9", "--end", "3"], "end on an obstacle"),
         (["plan", "paper:a", "--budget", "9", "--end", "home"], "end outside the map"),
-        (["plan", "paper:a", "--budget", "2", "--end", "24", "--policy", "exact"], "the end cannot be reached within the budget"),
+        (
+            ["plan", "paper:a", "--budget", "2", "--end", "24", "--policy", "exact"],
+            "the end cannot be reached within the budget",
+        ),
         (["plan", "paper:a", "--budget", "9", "--end", "start"], "explorer cannot plan for an end yet"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "-1"], "bad time limit"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "nan"], "bad time limit"),
-        (["plan", tmp_path / "cost.json", "--budget", "9"], "links[0]: bad \"weight\""),
+        (["plan", tmp_path / "cost.json", "--budget", "9"], 'links[0]: bad "weight"'),
         (["plan", tmp_path / "graph.json", "--budget", "9", "--policy", policy], "directions, on grid maps only"),
         (["maps", "show", tmp_path / "graph.json"], "only grid maps can be drawn"),
         (["train", "--maps", tmp_path / "graph.json", "--out", tmp_path / "new"], "need a grid map"),
@@ -185,15 +216,30 @@ def bad_inputs(tmp_path, policy):
         (["maps", "show", "paper:z"], "no such map"),
         (["maps", "show", "paper:a", "--walk", ""], "--walk"),
         (["maps", "show", "paper:a", "--svg", "/dev/null"], "something else stands there"),
-        ([*evaluate_nearest, "--seed", "-1"], "--seed: expected a whole number from 0 to 18446744073709551615, got '-1'"),
+        (
+            [*evaluate_nearest, "--seed", "-1"],
+            "--seed: expected a whole number from 0 to 18446744073709551615, got '-1'",
+        ),
         (["plan", "paper:a", "--budget", "9", "--seed", "1.5"], "--seed: expected a whole number"),
         (["maps", "generate", "maze", "--size", "9", "--seed", "-1"], "--seed: expected a whole number"),
-        (["plan", tmp_path / "labels.json", "--budget", "9", "--start", "1"], "start outside the map: expected a label of the map, or #N for node id N, got '1'"),
-        (["plan", "paper:a", "--budget", "9", "--start", "#25"], "start outside the map: expected a valid node's id or row,col"),
+        (
+            ["plan", tmp_path / "labels.json", "--budget", "9", "--start", "1"],
+            "start outside the map: expected a label of the map, or #N for node id N, got '1'",
+        ),
+        (
+            ["plan", "paper:a", "--budget", "9", "--start", "#25"],
+            "start outside the map: expected a valid node's id or row,col",
+        ),
         (["plan", tmp_path / "deep.json", "--budget", "9"], "nested too deeply"),
-        (["plan", tmp_path / "prize.json", "--budget", "9"], "nodes[1]: bad \"prize\""),
-        (["maps", "generate", "maze", "--size", "9", "--blocked", "0.2", "--out", tmp_path / "new"], "for the family obstacles"),
-        (["maps", "generate", "obstacles", "--size", "9", "--blocked", "0.95", "--out", tmp_path / "new"], "expected 0 to 0.9"),
+        (["plan", tmp_path / "prize.json", "--budget", "9"], 'nodes[1]: bad "prize"'),
+        (
+            ["maps", "generate", "maze", "--size", "9", "--blocked", "0.2", "--out", tmp_path / "new"],
+            "for the family obstacles",
+        ),
+        (
+            ["maps", "generate", "obstacles", "--size", "9", "--blocked", "0.95", "--out", tmp_path / "new"],
+            "expected 0 to 0.9",
+        ),
         ([*evaluate_nearest, "--budget", "1e12"], "bad budget"),
         ([*evaluate_nearest, "--\x1b[31m"], "\\x1b[31m"),
         (["train", "--resume", ""], "--resume"),
@@ -207,17 +253,29 @@ def bad_inputs(tmp_path, policy):
         (["train", "--swiftly"], "--swiftly"),
         (["train", "--rounds", "0", "--out", tmp_path / "new"], "--rounds"),
         (["train", "--teacher", "me", "--out", tmp_path / "new"], "--teacher"),
-        (["train", "--rounds", "3", "--episodes", "3", "--out", tmp_path / "new"], "--rounds is no option of the preset paper"),
-        (["train", "--preset", "explorer", "--maps", "paper:a", "--out", tmp_path / "new"], "--maps is no option of the preset explorer"),
+        (
+            ["train", "--rounds", "3", "--episodes", "3", "--out", tmp_path / "new"],
+            "--rounds is no option of the preset paper",
+        ),
+        (
+            ["train", "--preset", "explorer", "--maps", "paper:a", "--out", tmp_path / "new"],
+            "--maps is no option of the preset explorer",
+        ),
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:0"], "bad beam width"),
         (["plan", "paper:a", "--budget", "9", "--policy", f"guided:4:{policy}"], "policy of another network"),
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:4:nothing"], "cannot read the file"),
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:4:"], "no policy file is named"),
-        (["inspect", policy, "--map", "paper:a", "--walk", "0,1", "--budget", "9"], "the paper's network looks at no budget"),
+        (
+            ["inspect", policy, "--map", "paper:a", "--walk", "0,1", "--budget", "9"],
+            "the paper's network looks at no budget",
+        ),
         (["plan", "paper:a", "--budget", "-1"], "bad budget"),
         (["maps", "generate", "maze", "--size", "8", "--out", tmp_path / "new"], "an odd number of cells a side"),
         (["maps", "generate", "cave", "--size", "8", "--out", tmp_path / "new"], "no such family of worlds"),
-        (["maps", "generate", "maze", "--size", "9", "--weighted", "--out", tmp_path / "new"], "neither costs nor directions"),
+        (
+            ["maps", "generate", "maze", "--size", "9", "--weighted", "--out", tmp_path / "new"],
+            "neither costs nor directions",
+        ),
         (["maps", "generate", "maze", "--size", "9", "--out", policy.parent], "the folder is not empty"),
         (["maps", "generate", "maze", "--size", "9", "--split", "exam"], "--split"),
         (["train", "--budget", "70000", "--out", tmp_path / "new"], "budget out of range"),
@@ -265,7 +323,11 @@ def test_config_reads_a_run_back(run, trained, tmp_path):
     process = run("graphdrl", "train", "--config", tmp_path / "lines.toml", "--out", tmp_path / "lines")
     assert process.returncode == 0, process.stderr
     config = json.loads((tmp_path / "lines/config.json").read_text())
-    assert config["episodes"] == 2 and config["maps"] == ["paper:b", "paper:c"] and config["end_at_full_coverage"] is True
+    assert (
+        config["episodes"] == 2
+        and config["maps"] == ["paper:b", "paper:c"]
+        and config["end_at_full_coverage"] is True
+    )
 
 
 @pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
@@ -302,7 +364,9 @@ def test_graphdrl_loads_no_libtorch_and_only_builds_with_it_load_openblas_openmp
         return
     large = loaded_libraries("graphdrl-train")
     assert [name for name in large if name.startswith("libtorch_cpu")]
-    for library in [small["libopenblas.so.0"]] + [large[name] for name in ("libopenblas.so.0", "libblas.so.3", "liblapack.so.3")]:
+    for library in [small["libopenblas.so.0"]] + [
+        large[name] for name in ("libopenblas.so.0", "libblas.so.3", "liblapack.so.3")
+    ]:
         assert "openblas-openmp" in os.path.realpath(library)
 
 
@@ -322,7 +386,9 @@ def test_graphdrl_trains_alone_and_asks_for_graphdrl_train_where_cuda_does(run, 
     assert run(tmp_path / "graphdrl", "train", *arguments).stdout == " ".join(arguments) + "\n"
     config = tmp_path / "run/config.json"
     config.write_text(config.read_text().replace('"cpu"', '"cuda"'))
-    assert run(tmp_path / "graphdrl", "train", "--resume", tmp_path / "run").stdout == f"--resume {tmp_path / 'run'}\n"
+    assert (
+        run(tmp_path / "graphdrl", "train", "--resume", tmp_path / "run").stdout == f"--resume {tmp_path / 'run'}\n"
+    )
 
 
 def test_closed_streams_are_no_crash():
@@ -344,7 +410,10 @@ def test_network_policies_take_large_maps(run, trained, tmp_path):
 
 def test_bench_gives_the_documented_keys_and_one_signature(run):
     first = json.loads(run("graphdrl", "bench", "--json").stdout)
-    assert list(first) == "signature signature_learned env_steps_per_s move_ms learning_step_ms products_share gemm_share".split()
+    assert (
+        list(first)
+        == "signature signature_learned env_steps_per_s move_ms learning_step_ms products_share gemm_share".split()
+    )
     shares = ["products_share", "gemm_share"] if WITH_TORCH else ["products_share"]
     for key in ("env_steps_per_s", "learning_step_ms", *shares):
         assert list(first[key]) == ["1", "2"] and all(value > 0 for value in first[key].values())
@@ -361,7 +430,10 @@ def plan(run, *arguments):
     return json.loads(process.stdout)
 
 
-PLAN_KEYS = "map policy start end budget walk walk_cells visited coverage cost upper_bound max_visited gap optimal unreachable elapsed_s".split()
+PLAN_KEYS = (
+    "map policy start end budget walk walk_cells visited coverage cost upper_bound max_visited gap optimal unreachable "
+    "elapsed_s"
+).split()
 
 
 def test_plan_gives_a_walk_its_bound_and_the_documented_keys(run, trained):
@@ -380,7 +452,10 @@ def test_plan_gives_a_walk_its_bound_and_the_documented_keys(run, trained):
 
 def test_numbers_stand_on_one_line_in_json(run):
     text = run("graphdrl", "plan", "paper:a", "--budget", "3", "--policy", "dfs", "--json").stdout
-    assert '  "walk": [0, 1, 2, 1],\n  "walk_cells": [[0, 0], [0, 1], [0, 2], [0, 1]],\n' in text or '  "walk": [0, 1, 2],\n' in text
+    assert (
+        '  "walk": [0, 1, 2, 1],\n  "walk_cells": [[0, 0], [0, 1], [0, 2], [0, 1]],\n' in text
+        or '  "walk": [0, 1, 2],\n' in text
+    )
     assert text.startswith('{\n  "map": "paper:a",\n') and text.endswith("\n}\n")
     rows = run("graphdrl", "evaluate", "--policy", "nearest", "--maps", "paper:a", "--json").stdout
     assert re.search(r'\n {6}"ci95": \[[0-9.]+, [0-9.]+\],\n', rows) and '\n  "rows": [\n    {\n' in rows
@@ -415,7 +490,19 @@ def test_nodes_are_named_by_labels_or_ids(run, tmp_path):
 
 
 def test_obstacles_have_the_share_asked_for(run, tmp_path):
-    command = ["maps", "generate", "obstacles", "--size", "101", "--blocked", "0.2", "--count", "1", "--out", tmp_path / "worlds"]
+    command = [
+        "maps",
+        "generate",
+        "obstacles",
+        "--size",
+        "101",
+        "--blocked",
+        "0.2",
+        "--count",
+        "1",
+        "--out",
+        tmp_path / "worlds",
+    ]
     assert run("graphdrl", *command).returncode == 0
     (file,) = (tmp_path / "worlds").iterdir()
     assert file.name == "obstacles-101-0000.txt"
@@ -427,8 +514,10 @@ def test_plan_takes_any_graph_and_says_what_cannot_be_reached(run, tmp_path):
     one_way = [("dock", "a", 2.0), ("a", "b", 1.5), ("b", "dock", 1.0), ("a", "dead end", 3.0)]
     graph = {
         "directed": True,
-        "nodes": [{"id": name} for name in ("dock", "a", "b", "dead end", "island")] + [{"id": "wall", "blocked": True}],
-        "links": [{"source": a, "target": b, "weight": w} for a, b, w in one_way] + [{"source": "dock", "target": "wall"}],
+        "nodes": [{"id": name} for name in ("dock", "a", "b", "dead end", "island")]
+        + [{"id": "wall", "blocked": True}],
+        "links": [{"source": a, "target": b, "weight": w} for a, b, w in one_way]
+        + [{"source": "dock", "target": "wall"}],
     }
     (tmp_path / "plant.json").write_text(json.dumps(graph))
     result = plan(run, tmp_path / "plant.json", "--budget", "9.5", "--start", "dock")
@@ -440,7 +529,18 @@ def test_plan_takes_any_graph_and_says_what_cannot_be_reached(run, tmp_path):
     assert "dock (node 0)" in text and "1 node cannot be reached" in text and "optimal" in text
     info = json.loads(run("graphdrl", "maps", "info", tmp_path / "plant.json", "--json").stdout)
     assert info["directed"] and info["weighted"] and info["edges"] == 5 and info["components"] == 2
-    rows = evaluate(run, "--maps", tmp_path / "plant.json", "--budget", "9.5", "--all-starts", "--policy", "nearest", "--policy", "exact")["rows"]
+    rows = evaluate(
+        run,
+        "--maps",
+        tmp_path / "plant.json",
+        "--budget",
+        "9.5",
+        "--all-starts",
+        "--policy",
+        "nearest",
+        "--policy",
+        "exact",
+    )["rows"]
     assert rows[0]["mean"] <= rows[1]["mean"] == rows[1]["optimum"]
 
 
@@ -461,8 +561,12 @@ def test_generated_worlds_are_read_back_and_the_same_again(run, tmp_path):
         for folder in (tmp_path / name, tmp_path / f"{name} again"):
             assert run("graphdrl", "maps", "generate", *arguments, "--out", folder).returncode == 0
         files = sorted((tmp_path / name).iterdir())
-        assert [file.read_bytes() for file in files] == [file.read_bytes() for file in sorted((tmp_path / f"{name} again").iterdir())]
-        assert len({file.read_bytes() for file in files}) == len(files) == int(arguments[arguments.index("--count") + 1])
+        assert [file.read_bytes() for file in files] == [
+            file.read_bytes() for file in sorted((tmp_path / f"{name} again").iterdir())
+        ]
+        assert (
+            len({file.read_bytes() for file in files}) == len(files) == int(arguments[arguments.index("--count") + 1])
+        )
         infos = json.loads(run("graphdrl", "maps", "info", tmp_path / name, "--json").stdout)
         assert all(info["connected"] and info["weighted"] == info["directed"] == (name == "graphs") for info in infos)
         for policy in ("explorer", "guided:4"):
@@ -483,10 +587,16 @@ def test_an_explorer_is_trained_used_and_looked_into(run, tmp_path):
     assert json.loads((tmp_path / "run/metrics.jsonl").read_text().splitlines()[-1])["round"] == 2
     for name in (policy, f"guided:3:{policy}"):
         assert plan(run, "paper:a", "--budget", "25", "--policy", name)["visited"] >= 10
-    shown = json.loads(run("graphdrl", "inspect", policy, "--map", "paper:a", "--walk", "0,1", "--budget", "25", "--json").stdout)
+    shown = json.loads(
+        run("graphdrl", "inspect", policy, "--map", "paper:a", "--walk", "0,1", "--budget", "25", "--json").stdout
+    )
     first = shown["steps"][0]
     assert [visit["node"] for visit in first["first_visits"]] == [1, 5] and first["ceiling"] == 18
-    assert len(first["nodes"]) == 19 and first["nodes"][0]["current"] == 1 and first["first_visits"][1]["features"]["cost"] == 0.125
+    assert (
+        len(first["nodes"]) == 19
+        and first["nodes"][0]["current"] == 1
+        and first["first_visits"][1]["features"]["cost"] == 0.125
+    )
     assert "head2.weight" in run("graphdrl", "inspect", "explorer").stdout
 
 
@@ -499,7 +609,11 @@ def test_the_explorer_is_the_default_and_guided_with_a_time_limit(run):
 def test_odd_worlds_get_a_clear_answer(run, tmp_path):
     (tmp_path / "one.txt").write_text(".\n")
     (tmp_path / "two.txt").write_text(".#.\n")
-    links = [{"source": 0, "target": 0}, {"source": 0, "target": 1, "weight": 3}, {"source": 1, "target": 0, "weight": 2}]
+    links = [
+        {"source": 0, "target": 0},
+        {"source": 0, "target": 1, "weight": 3},
+        {"source": 1, "target": 0, "weight": 2},
+    ]
     (tmp_path / "loops.json").write_text(json.dumps({"nodes": [{"id": 0}, {"id": 1}], "links": links}))
     for policy in ("explorer", "guided", "beam", "exact", "nearest"):
         assert plan(run, tmp_path / "one.txt", "--budget", "9", "--policy", policy)["coverage"] == 100

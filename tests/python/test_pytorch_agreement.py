@@ -1,4 +1,4 @@
-"""The paper's network and learning step, written again in plain PyTorch: the same weights must give the same numbers."""
+"""The paper's network and learning step, written again in plain PyTorch: equal weights must give equal numbers."""
 
 import json
 
@@ -19,7 +19,9 @@ def gated_graph_conv(p, name, x, edges):
     for theta in weight:
         sent = h @ theta
         message = torch.zeros_like(sent).index_add(0, edges["to"], sent[edges["from"]])
-        h = torch.gru_cell(message, h, *(p[f"{name}.rnn.{part}"] for part in ("weight_ih", "weight_hh", "bias_ih", "bias_hh")))
+        h = torch.gru_cell(
+            message, h, *(p[f"{name}.rnn.{part}"] for part in ("weight_ih", "weight_hh", "bias_ih", "bias_hh"))
+        )
     return h
 
 
@@ -83,7 +85,14 @@ def test_policy_file_is_a_state_dict(run, trained):
     assert all(tensor.dtype == torch.float32 for tensor in p.values())
     arguments = ["--map", "paper:h", "--walk", "0,0,5,10", "--json"]
     steps = json.loads(run("graphdrl", "inspect", folder / "policy.safetensors", *arguments).stdout)["steps"]
-    pairs = [(r * 5 + c, s * 5 + d) for r in range(5) for c in range(5) for s in range(5) for d in range(5) if abs(r - s) + abs(c - d) == 1]
+    pairs = [
+        (r * 5 + c, s * 5 + d)
+        for r in range(5)
+        for c in range(5)
+        for s in range(5)
+        for d in range(5)
+        if abs(r - s) + abs(c - d) == 1
+    ]
     edges = {"to": torch.tensor([a for a, _ in pairs]), "from": torch.tensor([b for _, b in pairs])}
     for step in steps:
         features = torch.tensor(step["features"], dtype=torch.float32)

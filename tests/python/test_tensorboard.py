@@ -32,7 +32,9 @@ def test_a_run_resumed_after_a_crash_shows_no_step_twice(run, trained, tmp_path)
     shutil.copytree(whole, folder)
     # The checkpoint of an interrupted twin, older than the curves: what a crash leaves.
     twin = tmp_path / "twin"
-    process = subprocess.Popen([BIN / "graphdrl", "train", "--config", whole / "config.json", "--out", twin], stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        [BIN / "graphdrl", "train", "--config", whole / "config.json", "--out", twin], stderr=subprocess.PIPE
+    )
     while process.poll() is None and not ((twin / "metrics.jsonl").exists() and (twin / "metrics.jsonl").read_text()):
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)

@@ -31,8 +31,12 @@ World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vect
   data->labels = std::move(labels);
   data->prizes = std::move(prizes);
   const bool any_blocked = std::find(data->blocked.begin(), data->blocked.end(), true) != data->blocked.end();
-  data->open = any_blocked ? graph.without(data->blocked) : std::move(graph);
-  if (any_blocked) data->graph = std::move(graph);
+  if (any_blocked) {
+    data->open = graph.without(data->blocked);
+    data->graph = std::move(graph);
+  } else {
+    data->open = std::move(graph);
+  }
   if (data->open.directed()) {
     data->into = data->open.reversed();
     std::vector<Edge> edges = data->open.edges();

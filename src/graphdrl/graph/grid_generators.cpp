@@ -152,6 +152,7 @@ GridMap rooms_map(int rows, int cols, int max_room, Rng& rng) {
     return map;
   }
   std::vector<Cell> centres;
+  centres.reserve(static_cast<std::size_t>(rooms));
   for (int i = 0; i < rooms; ++i) centres.push_back(dig_room(map, max_room, rng));
   sort_by_strips(centres, 2 * max_room);
   for (std::size_t i = 1; i < centres.size(); ++i) dig_corridor(map, centres[i - 1], centres[i], rng);

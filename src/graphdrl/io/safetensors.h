@@ -19,7 +19,7 @@ using Shape = std::vector<std::int64_t>;
 
 // The format's name for an element type: "F32" …
 template <typename T>
-inline constexpr std::string_view kDtypeOf = "";
+inline constexpr std::string_view kDtypeOf{};
 template <>
 inline constexpr std::string_view kDtypeOf<float> = "F32";
 template <>
