@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <ostream>
 #include <string>
 
 #include "graphdrl/io/file.h"
@@ -11,6 +12,11 @@
 #include "support.h"
 
 namespace graphdrl {
+
+// What a test is listed as.
+inline void PrintTo(const TrainOptions& options, std::ostream* out) {
+  *out << options.preset << ' ' << options.algorithm << options.teacher;
+}
 
 // Of six episodes.
 inline TrainOptions short_paper() {
