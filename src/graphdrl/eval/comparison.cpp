@@ -63,6 +63,7 @@ std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& opt
   if (options.all_starts) return {nodes.begin(), nodes.end()};
   Rng rng(derive_seed(options.seed, kStartSeeds, map));
   std::vector<NodeId> starts;
+  starts.reserve(static_cast<std::size_t>(options.episodes));
   for (int i = 0; i < options.episodes; ++i) {
     starts.push_back(nodes[rng.below(static_cast<std::uint32_t>(nodes.size()))]);
   }
@@ -152,7 +153,7 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
 
 // A policy's label; the name as given where two policies would share one.
 std::string unambiguous_label(const std::string& name, const std::vector<std::string>& all) {
-  const std::string label = policy_label(name);
+  std::string label = policy_label(name);
   for (const std::string& other : all) {
     if (other != name && policy_label(other) == label) return name;
   }

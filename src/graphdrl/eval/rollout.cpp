@@ -49,6 +49,7 @@ std::vector<RolloutResult> roll_out(const World& world, std::span<const NodeId> 
     running = std::move(going_on);
   }
   std::vector<RolloutResult> results;
+  results.reserve(episodes.size());
   for (const Episode& episode : episodes) results.push_back({episode.walk(), episode.coverage(), episode.prize()});
   return results;
 }

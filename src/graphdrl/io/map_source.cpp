@@ -38,6 +38,7 @@ std::vector<NamedMap> folder_maps(const std::filesystem::path& folder) {
   if (files.empty()) throw Error({.what = "no map files in the folder", .where = folder.string()});
   std::sort(files.begin(), files.end());
   std::vector<NamedMap> maps;
+  maps.reserve(files.size());
   for (const auto& file : files) maps.push_back(file_map(file));
   return maps;
 }

@@ -49,7 +49,8 @@ float* row_of(float* x, int row, int width) {
 }  // namespace
 
 void linear(LinearShape shape, int rows, const float* x, const LinearTensors<const float>& weights, float* out) {
-  const auto [inputs, outputs] = shape;
+  const int inputs = shape.inputs;
+  const int outputs = shape.outputs;
   static thread_local PackedMatrix<float> packed;
   PackedMatrix<float>& transposed = packed;  // the caller's, for all threads
   transposed.set(inputs, outputs, Op::kTranspose, weights.weight, inputs);
@@ -62,7 +63,8 @@ void linear(LinearShape shape, int rows, const float* x, const LinearTensors<con
 
 void linear_backward(LinearShape shape, int rows, const float* x, const LinearTensors<const float>& weights,
                      const float* grad_out, float* grad_x, const LinearTensors<float>& grad) {
-  const auto [inputs, outputs] = shape;
+  const int inputs = shape.inputs;
+  const int outputs = shape.outputs;
   static thread_local PackedMatrix<float> packed;
   PackedMatrix<float>& right = packed;
   if (grad_x != nullptr) {

@@ -74,7 +74,8 @@ std::string draw_walk(const World& world, std::span<const NodeId> walk) {
     const int run = runs[std::minmax(walk[i], walk[i - 1])]++;
     const Point a = centre(map, walk[i - 1]);
     const Point b = centre(map, walk[i]);
-    const double lane = (run % 2 == 1 ? 1 : -1) * ((run + 1) / 2) * kLane;  // 0, 1, -1, 2, … times kLane
+    const int place = (run % 2 == 1 ? 1 : -1) * ((run + 1) / 2);  // 0, 1, -1, 2, …
+    const double lane = place * kLane;
     const bool across = a.y == b.y;
     const double dx = across ? 0 : lane;
     const double dy = across ? lane : 0;
