@@ -39,6 +39,13 @@ TEST(Explorer, VisitsAllWhereTheBudgetIsPlenty) {
   }
 }
 
+// The next first visit may be farther off than the features look: here some 3000 steps back.
+TEST(Explorer, GoesBackAsFarAsItMust) {
+  const World world = grid_world(std::string(6001, '.') + "\n");
+  ExplorerPlanner planner(std::make_shared<ExplorerScorer>(builtin_explorer()));
+  EXPECT_EQ(planner.plan({.view = world, .start = 3000, .budget = 10'000}).visited, 6001);
+}
+
 TEST(Explorer, RefusesWeightsThatGiveNoNumbers) {
   Rng rng(1);
   auto parameters = std::make_shared<ExplorerParameters>(rng);

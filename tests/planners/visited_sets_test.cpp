@@ -40,5 +40,33 @@ TEST(VisitedSets, AreWholeSets) {
   }
 }
 
+// Rows become shorter when walks agree again: what was wider must not be copied over its neighbours.
+TEST(VisitedSets, ShrinkWhenWalksAgree) {
+  constexpr NodeId kNodes = 2000;
+  constexpr int kWidth = 8;
+  VisitedSets sets(NodeSet(kNodes), kNodes);
+  std::vector<NodeSet> twins = {NodeSet(kNodes)};
+  for (NodeId level = 0; level < 120; ++level) {
+    std::vector<VisitedSets::Child> children;
+    std::vector<NodeSet> next;
+    for (int walk = 0; walk < kWidth; ++walk) {
+      // Each on its own, until all go on from one of them.
+      const bool together = level % 40 == 0;
+      const int parent = together || twins.size() == 1 ? 0 : walk;
+      const NodeId node = level * kWidth + walk;
+      children.push_back({parent, node});
+      next.push_back(twins[parent]);
+      next.back().insert(node);
+    }
+    sets.advance(children);
+    twins = next;
+    for (int walk = 0; walk < kWidth; ++walk) {
+      for (NodeId node = 0; node < kNodes; ++node) {
+        ASSERT_EQ(sets[walk].contains(node), twins[walk].contains(node)) << level << " " << node;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace graphdrl

@@ -26,6 +26,7 @@ constexpr double kBoundShare = 0.3;
 constexpr double kPlanShare = 0.97;
 constexpr double kProgressAfterS = 1;
 constexpr double kMostSeconds = 1e6;
+constexpr double kRounding = 1e-9;  // of sums of prizes
 
 struct PlanOptions {
   std::string map;
@@ -67,6 +68,10 @@ class PlanDisplay {
   ProgressDisplay display_;
 };
 
+double percent_of_all(const World& world, double prize) {
+  return world.total_prize() > 0 ? 100.0 * prize / world.total_prize() : 100.0;
+}
+
 int count_unreachable(const World& world, NodeId start) {
   int reached = 1;
   NearestFirst().run(world.open(), start, kNoLimit, [&](NodeId, double) {
@@ -104,9 +109,9 @@ Answer make_plan(const World& world, const Task& task, const PlanOptions& option
   Plan& plan = answer.plan;
   check_plan(world, task, plan);
   plan.bound = std::min(plan.bound, bound);
-  plan.optimal = plan.optimal || plan.prize >= plan.bound;
+  plan.optimal = plan.optimal || plan.prize >= plan.bound * (1 - kRounding);
   if (plan.optimal) plan.bound = plan.prize;
-  answer.max_visited = static_cast<int>(plan.bound);
+  if (!world.has_prizes()) answer.max_visited = static_cast<int>(plan.bound);
   answer.unreachable = count_unreachable(world, task.start);
   answer.elapsed_s = seconds_since(begin);
   return answer;
@@ -121,7 +126,7 @@ std::string name_of(const World& world, NodeId node) {
 
 Json to_json(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
   const Plan& plan = answer.plan;
-  const auto percent = [&](double prize) { return 100.0 * prize / world.total_prize(); };
+  const auto percent = [&](double prize) { return percent_of_all(world, prize); };
   Json json;
   json["map"] = world.name();
   json["policy"] = policy_label(options.policy);
@@ -159,7 +164,7 @@ Json to_json(const World& world, const Task& task, const PlanOptions& options, c
 
 std::string format_bound(const World& world, const Answer& answer) {
   const Plan& plan = answer.plan;
-  const auto percent = [&](double prize) { return 100.0 * prize / world.total_prize(); };
+  const auto percent = [&](double prize) { return percent_of_all(world, prize); };
   const char* const what = world.has_prizes() ? "is worth more" : "visits more";
   if (plan.optimal) return fmt::format("optimal  no walk {}\n", what);
   const std::string most =
@@ -178,7 +183,7 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
                       100.0 * plan.visited / world.valid_count(), plan.cost);
   if (world.has_prizes()) {
     text += fmt::format("prize    {:g} of {:g}, {:.1f} %\n", plan.prize, world.total_prize(),
-                        100.0 * plan.prize / world.total_prize());
+                        percent_of_all(world, plan.prize));
   }
   text += format_bound(world, answer);
   if (answer.unreachable > 0) {

@@ -21,6 +21,7 @@ namespace {
 constexpr std::array<double, kRankings> kPenaltyShares = {1, 0.25, 0};
 constexpr double kUnscored = 1e9;  // ranks first visits behind all that were scored
 constexpr int kExpansionsPerTick = 64;
+constexpr int kNodesPerUnit = 64;  // met on the way: as much work as an expansion
 
 // How many partial walks of a level the scorer sees. Of 50, 6 serve as well as all in loop mazes (docs/explorer.md); by
 // the root, for a wide beam is there to look beyond the network.
@@ -77,6 +78,7 @@ class Beam {
   int scored_per_level_;      // partial walks that the scorer sees, from the front of a level; 0 without one
   bool dropped_ = false;
   int visited_;  // by each partial walk of the level
+  int met_ = 0;  // nodes, by the last expansion
   NearestFirst nearest_;
 
   std::vector<Partial> level_;
@@ -141,13 +143,14 @@ bool Beam::expand_level(Ticker& ticker) {
   const int count = static_cast<int>(level_.size());
   const int scored = std::min(scored_per_level_, count);
   for (int first = 0; first < scored;) {
-    const int end = std::min(first + scorer_->most_states(view_), scored);
+    const int end = std::min(first + scorer_->most_states(), scored);
     expand_scored(first, end);
     first = end;
     if (ticker.tick(visited_, view_.valid_count(), kExpansionsPerTick)) return false;
   }
   for (int parent = scored; parent < count; ++parent) {
-    if (ticker.tick(visited_, view_.valid_count())) return false;
+    if (ticker.tick(visited_, view_.valid_count(), 1 + met_ / kNodesPerUnit)) return false;
+    met_ = 0;
     expand(parent);
   }
   return true;
@@ -187,6 +190,7 @@ void Beam::expand(int parent) {
   candidates_.begin_parent();
   double most_useful = most_useful_cost(from);
   nearest_.run(view_.open(), from.position, limit_ - from.spent, [&](NodeId node, double cost) {
+    ++met_;
     if (cost > most_useful) {
       dropped_ = true;
       return Next::kEnd;

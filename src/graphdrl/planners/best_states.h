@@ -22,7 +22,8 @@ struct Candidate {
   Rankings rankings;
   std::uint64_t visited_hash;  // of the visited set
 };
-inline constexpr double kCandidateBytes = sizeof(Candidate) + 32;  // and its place in the table of states
+// With room to grow, and up to four slots of the table of states.
+inline constexpr double kCandidateBytes = 2 * sizeof(Candidate) + 96;
 
 // Candidates of different states (visited set and position). Of two that lead to one state the cheaper stays, with the
 // better of their first rankings.

@@ -15,6 +15,7 @@ namespace graphdrl {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-12;  // of sums of prizes, in whatever order
 
 // The nodes that a walk can visit: reached within the budget, and left for the end.
 struct Reach {
@@ -304,7 +305,7 @@ double max_prize(const Task& task, Deadline deadline) {
   if (passed(deadline)) return most;
   const ArrivalTree tree(task, reach);
   most = std::min(most, fractional_bound(task, reach, tree));
-  if (task.view.has_prizes()) return most;
+  if (task.view.has_prizes()) return most * (1 + kRounding);
   most = std::floor(most + 1e-9);
   if (passed(deadline)) return most;
   if (const auto nodes = Knapsack(task, tree, deadline).most_visited()) {

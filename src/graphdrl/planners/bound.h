@@ -20,8 +20,8 @@ namespace graphdrl {
 
 inline constexpr double kKnapsackSums = 2e8;  // a fifth of a second
 
-// No walk has a higher prize [Plan::prize]. The first relaxation and the two last always count; the exact knapsack is
-// left out once the deadline passes. Throws Error where there is no walk at all [check(Task)].
+// No walk has a higher prize [Plan::prize]. Once the deadline passes, only the sum of prizes, colours and order count.
+// Throws Error where there is no walk at all [check(Task)].
 double max_prize(const Task& task, Deadline deadline = {});
 
 }  // namespace graphdrl

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
-#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -14,6 +12,8 @@
 
 namespace graphdrl {
 namespace {
+
+constexpr double kRounding = 1e-12;  // of sums of prizes
 
 using NodeSet64 = std::uint64_t;  // of nodes in reach, by local index
 
@@ -233,6 +233,7 @@ class GeneralSearch {
     int node;
   };
 
+  double prize_of(NodeSet64 visited) const;
   double most_from(const State& state, double prize, double spent) const;
 
   // The order of the heap: the most first, then the deepest, then the cheapest.
@@ -275,6 +276,15 @@ GeneralSearch::GeneralSearch(const Task& task, Deadline deadline)
     const double other = b.cost / b.prize;
     return one != other ? one < other : a.node < b.node;
   });
+}
+
+// The same for the same set, in whatever order it was visited.
+double GeneralSearch::prize_of(NodeSet64 visited) const {
+  double prize = 0;
+  for (NodeSet64 rest = visited & ~reach_.state.visited; rest != 0; rest &= rest - 1) {
+    prize += reach_.prizes[std::countr_zero(rest)];
+  }
+  return prize;
 }
 
 // With unit prizes whole nodes, else the last one in part.
@@ -355,7 +365,7 @@ void GeneralSearch::expand(int index) {
     if (from.spent + paths.cost[node] + reach_.cost_to_end[node] > limit_) continue;
     Entry entry{.state = {from.state.visited | bit(node), node},
                 .spent = from.spent + paths.cost[node],
-                .prize = from.prize + reach_.prizes[node],
+                .prize = prize_of(from.state.visited | bit(node)),
                 .most = 0,
                 .before = index};
     const auto [known, fresh] = least_spent_.try_emplace(entry.state, entry.spent);
@@ -379,7 +389,8 @@ std::optional<std::vector<NodeId>> GeneralSearch::walk() {
   while (!heap_.empty()) {
     const int index = pop();
     const Entry entry = entries_[index];
-    if (best >= 0 && entry.most < entries_[best].prize) break;  // nothing left in the heap can be worth more
+    if (best >= 0 && entry.most < entries_[best].prize * (1 - kRounding))
+      break;  // nothing left in the heap can be worth more
     const auto known = least_spent_.find(entry.state);
     if (known != least_spent_.end() && known->second < entry.spent) continue;
     const double cost = entry.spent + cost_to_the_end(entry);
@@ -430,6 +441,7 @@ std::vector<NodeId> straight_walk(const Task& task) {
 }  // namespace
 
 std::optional<double> exact_prize(const Task& task) {
+  check(task);
   if (is_plain(task)) {
     const auto best = ExactSearch(task).optimum();
     return best ? std::optional(best->gain + (task.visited.empty() ? 1.0 : 0.0)) : std::nullopt;
@@ -439,6 +451,7 @@ std::optional<double> exact_prize(const Task& task) {
 }
 
 std::optional<std::vector<NodeId>> exact_walk(const Task& task, Deadline deadline) {
+  check(task);
   return is_plain(task) ? ExactSearch(task, deadline).walk() : GeneralSearch(task, deadline).walk();
 }
 

@@ -16,8 +16,6 @@ constexpr double kWorthOfPlenty = 0.1;  // likewise, for each mean edge a node t
 constexpr double kPlenty = 1.2;
 constexpr double kIndifference = 0.4;  // by which the nearest may fall behind, all work being out of scope
 
-constexpr int kBlockNodes = 8192;  // of states scored at once: their layers fit a core's second-level cache
-constexpr int kMostStates = 16;    // of those, so that a deadline is met to a few milliseconds
 constexpr int kVisitsPerTick = 8;
 
 }  // namespace
@@ -43,10 +41,6 @@ void ExplorerScorer::shortfalls(const ExplorerBatch& batch, std::vector<float>& 
   for (const float value : shortfall) {
     if (!std::isfinite(value)) throw Error({.what = "the explorer's weights are too large to compute with"});
   }
-}
-
-int ExplorerScorer::most_states(const View& view) const {
-  return std::clamp(kBlockNodes / std::min(view.valid_count(), kExplorerScope), 1, kMostStates);
 }
 
 bool ExplorerScorer::score(const View& view, std::span<const ExplorationState> states,
@@ -88,6 +82,17 @@ Plan ExplorerPlanner::plan(const Task& task, Deadline deadline, const Report& re
   return plan_by_deadline(task, deadline, [&](Deadline until) { return walk_until(task, until, report); });
 }
 
+// Where all first visits are too far off to be looked at. REQUIRES: there is one.
+FirstVisit ExplorerPlanner::nearest_first_visit(const View& view, const ExplorationState& state) {
+  FirstVisit nearest{.node = kNoNode, .cost = 0};
+  search_.run(view.open(), state.position, state.spendable, [&](NodeId node, double cost) {
+    if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
+    nearest = {node, cost};
+    return NearestFirst::Next::kEnd;
+  });
+  return nearest;
+}
+
 Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Report& report) {
   Ticker ticker(deadline, report, kVisitsPerTick);
   NodeSet visited = task.visited_before();
@@ -99,9 +104,11 @@ Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Repo
   do {
     batch.clear();
     const std::span<const FirstVisit> visits = scorer_->encoder().append(task.view, state, kExplorerScope, batch);
-    if (visits.empty()) return plan_of_walk(task, walk_through(task, first_visits, search_), optimal);
-    optimal = optimal && visits.size() == 1 && !scorer_->encoder().overlooked();
-    const FirstVisit choice = visits[scorer_->choose(task.view, batch, visits)];
+    const bool overlooked = scorer_->encoder().overlooked();
+    if (visits.empty() && !overlooked) return plan_of_walk(task, walk_through(task, first_visits, search_), optimal);
+    optimal = optimal && visits.size() == 1 && !overlooked;
+    const FirstVisit choice =
+        visits.empty() ? nearest_first_visit(task.view, state) : visits[scorer_->choose(task.view, batch, visits)];
     first_visits.push_back(choice.node);
     visited.insert(choice.node);
     ++state.visited_count;

@@ -34,7 +34,7 @@ class ExplorerScorer final : public FirstVisitScorer {
   // A score is the shortfall less the state's ceiling: how many nodes will be left, but for what all states share.
   // Throws Error where the network's weights are so large that it gives no number.
   bool score(const View& view, std::span<const ExplorationState> states, std::vector<ScoredVisit>& visits) override;
-  int most_states(const View& view) const override;
+  int most_states() const override { return 16; }  // a few milliseconds
   int most_visits() const override { return kExplorerScope; }
 
   // How many nodes the best walk after each first visit falls short of its state's ceiling. shortfall: [C], resized.
@@ -69,6 +69,7 @@ class ExplorerPlanner final : public Planner {
 
  private:
   Plan walk_until(const Task& task, Deadline deadline, const Report& report);
+  FirstVisit nearest_first_visit(const View& view, const ExplorationState& state);
 
   std::shared_ptr<ExplorerScorer> scorer_;
   NearestFirst search_;

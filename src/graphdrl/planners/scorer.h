@@ -24,8 +24,8 @@ class FirstVisitScorer {
   // `visits` is overwritten. Gives whether first visits of any state were left out.
   virtual bool score(const View& view, std::span<const ExplorationState> states, std::vector<ScoredVisit>& visits) = 0;
 
-  // How many states to score together at most, so that the work fits a processor's caches.
-  virtual int most_states(const View& view) const = 0;
+  // How many states to score together at most, so that a deadline is not missed by much.
+  virtual int most_states() const = 0;
   // How many first visits of a state are scored at most, those equally near aside.
   virtual int most_visits() const = 0;
 };

@@ -31,7 +31,7 @@ void VisitedSets::advance(std::span<const Child> children) {
   next_.assign(children.size() * words, 0);
   for (std::size_t i = 0; i < children.size(); ++i) {
     std::uint64_t* const row = next_.data() + i * words;
-    std::copy_n(rows_.data() + children[i].parent * words_, words_, row);
+    std::copy_n(rows_.data() + children[i].parent * words_, std::min(words_, words), row);
     const std::int32_t place = place_[children[i].node];
     row[place / 64] |= bit_of(place);
   }
