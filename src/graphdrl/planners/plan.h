@@ -28,7 +28,7 @@ struct Plan {
   double prize = 0;          // of the nodes first visited on the walk, and of its start where that is new
   double cost = 0;
   double bound = std::numeric_limits<double>::infinity();  // no walk has a higher prize
-  bool optimal = false;  // proved so: no walk has a higher prize
+  bool optimal = false;                                    // proved so: no walk has a higher prize
 };
 
 // Whether one plan is better: by prize, then by cost.
