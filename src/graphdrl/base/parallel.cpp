@@ -30,13 +30,31 @@ int thread_count = 1;
 std::optional<Pool> pool;  // where thread_count > 1
 thread_local bool within_task = false;
 
+// ThreadSanitizer does not see how libtbb.so orders a loop's begin before its tasks and these before its end. Each
+// order has a mark of its own: with one for both, the end of a task would order the next one behind it and hide their
+// races.
+struct OrderMark {
+#ifdef __SANITIZE_THREAD__
+  void before() {
+    __tsan_release(this);
+  }
+  void after() {
+    __tsan_acquire(this);
+  }
+  char address = 0;
+#else
+  static void before() {}
+  static void after() {}
+#endif
+};
+
 // One call of parallel_for.
 class Loop {
  public:
-  Loop(void (*body)(const void*, int), const void* task) : run_(body), task_(task) { publish(); }
+  Loop(void (*body)(const void*, int), const void* task) : run_(body), task_(task) { begin_.before(); }
 
   void run(int i) {
-    receive();
+    begin_.after();
     within_task = true;
     try {
       run_(task_, i);
@@ -48,31 +66,20 @@ class Loop {
       }
     }
     within_task = false;
-    publish();
+    end_.before();
   }
 
   // After the last task.
   void finish() {
-    receive();
+    end_.after();
     if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  // ThreadSanitizer does not see how libtbb.so orders a loop's begin, its tasks and its end.
-#ifdef __SANITIZE_THREAD__
-  void publish() {
-    __tsan_release(this);
-  }
-  void receive() {
-    __tsan_acquire(this);
-  }
-#else
-  static void publish() {}
-  static void receive() {}
-#endif
-
   void (*run_)(const void*, int);
   const void* task_;
+  OrderMark begin_;
+  OrderMark end_;
   std::mutex mutex_;
   std::exception_ptr failure_;
   int failed_ = 0;
