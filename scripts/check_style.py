@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 WIDTH = 120
 SUFFIXES = {".cpp", ".h", ".py", ".md"}
 LIST_ITEM = re.compile(r"([-*+]|\d+\.) +")
-CODE_SPAN = re.compile(r"`[^`]+`")
+CODE_SPAN = re.compile(r"`[^`]{1,60}`")
 GLUE = "\ue000"  # stands for a space that no line may be broken at
 
 

@@ -60,7 +60,7 @@ Plan plan_by_steps(const World& world, const Task& task, Policy& policy, Deadlin
   Episode episode(world, {.budget = task.budget, .end = end, .action_space = action_space_of(world)});
   episode.reset(task.start);
   std::size_t last_visit = 1;  // length of the walk up to it
-  while (!episode.done() && !ticker.tick(episode.visited_count(), world.valid_count())) {
+  while (!episode.done() && !ticker.tick(episode.visited_count())) {
     const Observation now = episode.observation();
     const int visited = episode.visited_count();
     int action = kStop;

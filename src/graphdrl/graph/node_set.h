@@ -28,8 +28,6 @@ class NodeSet {
   std::vector<std::uint64_t>& words() { return words_; }
   const std::vector<std::uint64_t>& words() const { return words_; }
 
-  friend bool operator==(const NodeSet&, const NodeSet&) = default;
-
  private:
   std::vector<std::uint64_t> words_;
 };

@@ -38,9 +38,6 @@ class NearestFirst {
     std::reverse(walk.begin() + first, walk.end());
   }
 
-  // The node before one that was met in the last run; the start is its own.
-  NodeId parent(NodeId node) const { return marks_[node].parent; }
-
  private:
   struct Mark {
     std::uint32_t run = 0;  // the run that met the node last

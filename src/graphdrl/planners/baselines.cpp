@@ -153,7 +153,7 @@ Plan DepthFirstPlanner::plan(const Task& task, Deadline deadline, const Report& 
   Ticker ticker(deadline, report, kVisitsPerTick);
   DepthFirstWalk walk(task, search_);
   while (walk.advance()) {
-    if (ticker.tick(walk.visits(), task.view.valid_count())) break;
+    if (ticker.tick(walk.visits())) break;
   }
   return plan_of_walk(task, std::move(walk).take_walk());
 }
@@ -181,7 +181,7 @@ Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& rep
     search_.append_path_to(goal, walk);
     visited.insert(goal);
     ++visits;
-  } while (!ticker.tick(visits, task.view.valid_count(), 1 + met / kNodesPerUnit));
+  } while (!ticker.tick(visits, 1 + met / kNodesPerUnit));
   return plan_of_walk(task, std::move(walk));
 }
 

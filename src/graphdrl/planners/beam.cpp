@@ -146,10 +146,10 @@ bool Beam::expand_level(Ticker& ticker) {
     const int end = std::min(first + scorer_->most_states(), scored);
     expand_scored(first, end);
     first = end;
-    if (ticker.tick(visited_, view_.valid_count(), kExpansionsPerTick)) return false;
+    if (ticker.tick(visited_, kExpansionsPerTick)) return false;
   }
   for (int parent = scored; parent < count; ++parent) {
-    if (ticker.tick(visited_, view_.valid_count(), 1 + met_ / kNodesPerUnit)) return false;
+    if (ticker.tick(visited_, 1 + met_ / kNodesPerUnit)) return false;
     met_ = 0;
     expand(parent);
   }

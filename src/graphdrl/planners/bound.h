@@ -18,7 +18,7 @@
 
 namespace graphdrl {
 
-inline constexpr double kKnapsackSums = 2e8;  // a fifth of a second
+inline constexpr double kKnapsackSums = 2e8;
 
 // No walk has a higher prize [Plan::prize]. Once the deadline passes, only the sum of prizes, colours and order count.
 // Throws Error where there is no walk at all [check(Task)].

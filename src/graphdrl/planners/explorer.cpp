@@ -114,7 +114,7 @@ Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Repo
     ++state.visited_count;
     state.position = choice.node;
     state.spendable -= choice.cost;
-  } while (!ticker.tick(state.visited_count, task.view.valid_count()));
+  } while (!ticker.tick(state.visited_count));
   return plan_of_walk(task, walk_through(task, first_visits, search_));
 }
 

@@ -43,8 +43,7 @@ Plan plan_of_walk(const Task& task, std::vector<NodeId> walk, bool optimal = fal
 
 // How far a planner is. Told now and then while it works, on the thread that called it.
 struct PlanProgress {
-  double done;  // of the search under way, from 0 to 1
-  int visited;  // by the walk under way
+  int visited;  // nodes, by the walk under way
 };
 using Report = std::function<void(const PlanProgress&)>;
 
@@ -70,12 +69,12 @@ class Ticker {
  public:
   Ticker(Deadline deadline, const Report& report, int every) : deadline_(deadline), report_(&report), every_(every) {}
 
-  // Whether the deadline has passed, after so many units of work. visited: by the walk under way, of `most` nodes.
-  bool tick(int visited, int most, int units = 1) {
+  // Whether the deadline has passed, after so many units of work. visited: by the walk under way.
+  bool tick(int visited, int units = 1) {
     done_ += units;
     if (done_ < every_) return false;
     done_ = 0;
-    if (*report_) (*report_)({.done = most > 0 ? static_cast<double>(visited) / most : 1, .visited = visited});
+    if (*report_) (*report_)({.visited = visited});
     return passed(deadline_);
   }
 

@@ -6,7 +6,7 @@
 namespace graphdrl {
 namespace {
 
-// Chosen once and kept; docs/explorer.md tells which parts of the loss pay.
+// Not searched over; docs/explorer.md tells which parts of the loss pay.
 constexpr double kHuberKnee = 2;       // nodes
 constexpr double kFarShort = 4;        // nodes: where even the best falls this short, values count half
 constexpr double kLeastShare = 1e-30;  // keeps the logarithm of a share finite

@@ -13,7 +13,7 @@
 
 namespace graphdrl {
 
-// The figures are those of docs/explorer.md, "Training".
+// The defaults are what the explorer in the program was trained with; only `lead` was varied (docs/explorer.md).
 struct LessonOptions {
   std::vector<WorldSpec> worlds;  // drawn from with equal chances
   int teacher_width = 0;          // of the beam that values a first visit; 0 to value none
