@@ -1,6 +1,7 @@
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 
+// NOLINTNEXTLINE(bugprone-exception-escape): before the arguments are read only memory can run out
 int main(int argc, char** argv) {
   CLI::App app{"GraphDRL learns to explore graphs: to visit as many nodes as it can before a budget runs out.",
                "graphdrl"};

@@ -1,6 +1,7 @@
 #include "graphdrl/nn/explorer_features.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace graphdrl {
@@ -33,6 +34,30 @@ struct BudgetView {
   float per_work;
   float slack;
 };
+
+// The features by name, in the order of kExplorerNodeFeatures and kExplorerVisitFeatures.
+struct NodeFeatures {
+  float unvisited, current, candidate, degree, unvisited_neighbours, isolated, dead_end, distance, visit_cost,
+      out_of_scope, distance_to_work, part_size, part_share, edge_cost, budget_per_work, slack, hanging, hanging_size,
+      hanging_height, one_way;
+};
+
+struct VisitFeatures {
+  float cost, change_of_penalties, unvisited_neighbours, next_cost, budget_per_work, slack, work, hanging, hanging_size,
+      hanging_height, work_in_scope;
+};
+
+template <typename Features>
+void append_row(const Features& features, std::vector<float>& rows) {
+  const auto row = std::bit_cast<std::array<float, sizeof(Features) / sizeof(float)>>(features);
+  rows.insert(rows.end(), row.begin(), row.end());
+}
+static_assert(sizeof(NodeFeatures) == kExplorerNodeFeatureCount * sizeof(float));
+static_assert(sizeof(VisitFeatures) == kExplorerVisitFeatureCount * sizeof(float));
+
+constexpr float flag(bool value) {
+  return value ? 1.0f : 0.0f;
+}
 
 }  // namespace
 
@@ -293,40 +318,40 @@ void ExplorerEncoder::append_nodes(const View& view, const ExplorationState& sta
   const Graph& into = view.into();
   const BudgetView budget(share_ * state.spendable / unit_, share_ * work_);
   batch.graphs.add(batch.scopes.emplace_back(scope_graph(view)));
-  const std::size_t first = batch.node_x.size();
-  batch.node_x.resize(first + seen_.size() * kExplorerNodeFeatureCount);
-  float* x = batch.node_x.data() + first;
   const Graph& scope = batch.scopes.back();
   for (std::size_t row = 0; row < seen_.size(); ++row) {
     const int i = seen_[row];
     const NodeId node = nodes_[i];
     const bool is_open = unvisited_[i] != 0;
     const int degree = degree_[i];
+    const int in_scope = scope.degree(static_cast<NodeId>(row));
     double cost = 0;
     for (int k = 0; k < open.degree(node); ++k) cost += open.cost(node, k);
     const int both_ways = open.degree(node) + into.degree(node) - degree;
-    x[0] = is_open;
-    x[1] = i == 0;
-    x[2] = visit_cost_[i] > 0;
-    x[3] = log_scale(degree);
-    x[4] = log_scale(unvisited_neighbours_[i]);
-    x[5] = is_open && unvisited_neighbours_[i] == 0;
-    x[6] = is_open && unvisited_neighbours_[i] == 1;
-    x[7] = near_scale(distance_[i]);
-    x[8] = near_scale(visit_cost_[i]);
-    x[9] =
-        static_cast<float>(degree - scope.degree(static_cast<NodeId>(row))) / static_cast<float>(std::max(degree, 1));
-    x[10] = near_scale(work_distance_[i] < 0 ? kFar : work_distance_[i]);
-    x[11] = log_scale(part_size_[i]);
-    x[12] = static_cast<float>(std::min(part_size_[i] / std::max(work_, 1.0), 1.0));
-    x[13] = static_cast<float>(std::min(cost / unit_ / std::max(open.degree(node), 1), kDear) - 1);
-    x[14] = budget.per_work;
-    x[15] = budget.slack;
-    x[16] = hanging_[i];
-    x[17] = log_scale(hanging_size_[i]);
-    x[18] = near_scale(hanging_height_[i]);
-    x[19] = degree == 0 ? 0.0f : 1 - static_cast<float>(both_ways) / static_cast<float>(degree);
-    x += kExplorerNodeFeatureCount;
+    append_row(
+        NodeFeatures{
+            .unvisited = flag(is_open),
+            .current = flag(i == 0),
+            .candidate = flag(visit_cost_[i] > 0),
+            .degree = log_scale(degree),
+            .unvisited_neighbours = log_scale(unvisited_neighbours_[i]),
+            .isolated = flag(is_open && unvisited_neighbours_[i] == 0),
+            .dead_end = flag(is_open && unvisited_neighbours_[i] == 1),
+            .distance = near_scale(distance_[i]),
+            .visit_cost = near_scale(visit_cost_[i]),
+            .out_of_scope = static_cast<float>(degree - in_scope) / static_cast<float>(std::max(degree, 1)),
+            .distance_to_work = near_scale(work_distance_[i] < 0 ? kFar : work_distance_[i]),
+            .part_size = log_scale(part_size_[i]),
+            .part_share = static_cast<float>(std::min(part_size_[i] / std::max(work_, 1.0), 1.0)),
+            .edge_cost = static_cast<float>(std::min(cost / unit_ / std::max(open.degree(node), 1), kDear) - 1),
+            .budget_per_work = budget.per_work,
+            .slack = budget.slack,
+            .hanging = flag(hanging_[i] != 0),
+            .hanging_size = log_scale(hanging_size_[i]),
+            .hanging_height = near_scale(hanging_height_[i]),
+            .one_way = degree == 0 ? 0.0f : 1 - static_cast<float>(both_ways) / static_cast<float>(degree),
+        },
+        batch.node_x);
   }
 }
 
@@ -344,11 +369,21 @@ void ExplorerEncoder::append_visits(const View& view, const ExplorationState& st
     });
     const BudgetView after(share_ * (budget - visit_cost_[i]), share_ * (work_ - 1));
     const double change = change_of_penalties(view, state.visited, visit.node);
-    batch.visit_x.insert(batch.visit_x.end(),
-                         {near_scale(visit_cost_[i]), static_cast<float>(change / 4),
-                          log_scale(unvisited_neighbours_[i]), near_scale(next_cost), after.per_work, after.slack,
-                          log_scale(static_cast<int>(std::min(work_, 1e9))), static_cast<float>(hanging_[i]),
-                          log_scale(hanging_size_[i]), near_scale(hanging_height_[i]), static_cast<float>(share_)});
+    append_row(
+        VisitFeatures{
+            .cost = near_scale(visit_cost_[i]),
+            .change_of_penalties = static_cast<float>(change / 4),
+            .unvisited_neighbours = log_scale(unvisited_neighbours_[i]),
+            .next_cost = near_scale(next_cost),
+            .budget_per_work = after.per_work,
+            .slack = after.slack,
+            .work = log_scale(static_cast<int>(std::min(work_, 1e9))),
+            .hanging = flag(hanging_[i] != 0),
+            .hanging_size = log_scale(hanging_size_[i]),
+            .hanging_height = near_scale(hanging_height_[i]),
+            .work_in_scope = static_cast<float>(share_),
+        },
+        batch.visit_x);
     batch.target.push_back(first_row + number_[i]);
     batch.state.push_back(batch.graphs.graph_count() - 1);
   }

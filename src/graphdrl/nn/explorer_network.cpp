@@ -12,7 +12,7 @@ namespace {
 constexpr int kWidth = kExplorerConvShape.width;
 constexpr int kVisitsPerTask = 64;
 
-std::vector<TensorSpec> make_specs() {
+std::vector<TensorSpec> explorer_specs() {
   TensorList list;
   list.add_conv("conv", kExplorerConvShape);
   list.add_linear("head1", kExplorerHead1);
@@ -20,7 +20,7 @@ std::vector<TensorSpec> make_specs() {
   return std::move(list).specs();
 }
 
-nlohmann::json network_description() {
+nlohmann::json explorer_description() {
   const auto& conv = kExplorerConvShape;
   return {{"kind", "explorer"},
           {"node_features", kExplorerNodeFeatures},
@@ -56,16 +56,16 @@ void add_to(const float* from, int count, float* to) {
 }  // namespace
 
 const std::vector<TensorSpec>& ExplorerParameters::specs() {
-  static const std::vector<TensorSpec> specs = make_specs();
+  static const std::vector<TensorSpec> specs = explorer_specs();
   return specs;
 }
 
 void write_policy_file(const std::filesystem::path& path, const ExplorerParameters& parameters) {
-  write_policy_file(path, parameters, network_description());
+  write_policy_file(path, parameters, explorer_description());
 }
 
 ExplorerParameters read_explorer(const Safetensors& file) {
-  require_description(file, network_description(), ExplorerParameters::specs());
+  require_description(file, explorer_description(), ExplorerParameters::specs());
   return ExplorerParameters::from_file(file);
 }
 

@@ -12,7 +12,7 @@
 namespace graphdrl {
 namespace {
 
-std::vector<TensorSpec> make_specs() {
+std::vector<TensorSpec> paper_specs() {
   TensorList list;
   for (std::size_t layer = 0; layer < kConvShapes.size(); ++layer) {
     list.add_conv(fmt::format("conv{}", layer + 1), kConvShapes[layer]);
@@ -30,7 +30,7 @@ std::vector<TensorSpec> make_specs() {
 }
 
 // Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
-nlohmann::json network_description() {
+nlohmann::json paper_description() {
   nlohmann::json layers = nlohmann::json::array();
   for (const auto [inputs, width, steps, elu] : kConvShapes) {
     layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
@@ -58,7 +58,7 @@ PaperParameters::PaperParameters(Rng& rng) : PaperParameters() {
 }
 
 const std::vector<TensorSpec>& PaperParameters::specs() {
-  static const std::vector<TensorSpec> specs = make_specs();
+  static const std::vector<TensorSpec> specs = paper_specs();
   return specs;
 }
 
@@ -71,12 +71,12 @@ GatedGraphConvTensors<const float> PaperParameters::conv(int layer) const {
 }
 
 void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters) {
-  write_policy_file(path, parameters, network_description());
+  write_policy_file(path, parameters, paper_description());
 }
 
 PaperParameters read_policy_file(const std::filesystem::path& path) {
   const Safetensors file = Safetensors::read(path);
-  require_description(file, network_description(), PaperParameters::specs());
+  require_description(file, paper_description(), PaperParameters::specs());
   return PaperParameters::from_file(file);
 }
 

@@ -7,7 +7,6 @@ namespace graphdrl {
 namespace {
 
 constexpr int kVisitsPerTick = 256;
-constexpr int kNodesPerUnit = 64;  // met on the way: as much work as a first visit
 
 // Draws one of the actions that are allowed; kStop where none is.
 template <typename Allowed>
@@ -181,7 +180,7 @@ Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& rep
     search_.append_path_to(goal, walk);
     visited.insert(goal);
     ++visits;
-  } while (!ticker.tick(visits, 1 + met / kNodesPerUnit));
+  } while (!ticker.tick(visits, 1 + met / Ticker::kNodesPerUnit));
   return plan_of_walk(task, std::move(walk));
 }
 

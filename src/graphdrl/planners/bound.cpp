@@ -15,18 +15,17 @@ namespace graphdrl {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-12;  // of sums of prizes, in whatever order
 
 // The nodes that a walk can visit: reached within the budget, and left for the end.
-struct Reach {
-  explicit Reach(const Task& task);
+struct Reachable {
+  explicit Reachable(const Task& task);
 
   std::vector<NodeId> nodes;   // the start first
   std::vector<bool> contains;  // [N]
   std::vector<double> prizes;  // [N], of first visits: 0 where visited before
 };
 
-Reach::Reach(const Task& task) : contains(task.view.node_count()), prizes(task.view.node_count()) {
+Reachable::Reachable(const Task& task) : contains(task.view.node_count()), prizes(task.view.node_count()) {
   const bool anywhere = task.ends_anywhere();
   const std::vector<double> to_end = anywhere ? std::vector<double>() : costs_to(task.view.into(), task.end);
   const auto take = [&](NodeId node, double cost) {
@@ -44,7 +43,7 @@ Reach::Reach(const Task& task) : contains(task.view.node_count()), prizes(task.v
 
 // The tree of blocks, with what it costs to arrive in them.
 struct ArrivalTree {
-  ArrivalTree(const Task& task, const Reach& reach);
+  ArrivalTree(const Task& task, const Reachable& reachable);
 
   Blocks blocks;
   std::vector<double> arrival;  // by place among the blocks' members: the cheapest edge of its block into a member
@@ -52,8 +51,8 @@ struct ArrivalTree {
   std::vector<bool> holds_end;  // [blocks], where the walk must end: in it, or in what hangs from it
 };
 
-ArrivalTree::ArrivalTree(const Task& task, const Reach& reach)
-    : blocks(task.view.open(), task.view.into(), task.start, reach.contains) {
+ArrivalTree::ArrivalTree(const Task& task, const Reachable& reachable)
+    : blocks(task.view.open(), task.view.into(), task.start, reachable.contains) {
   const Graph& into = task.view.into();
   std::vector<int> block_of(task.view.node_count(), -1);
   std::vector<bool> end_below(task.view.node_count());
@@ -97,7 +96,7 @@ void merge(Items& into, Items& from) {
 }
 
 // The first relaxation of bound.h.
-double fractional_bound(const Task& task, const Reach& reach, const ArrivalTree& tree) {
+double fractional_bound(const Task& task, const Reachable& reachable, const ArrivalTree& tree) {
   std::vector<Items> hanging(task.view.node_count());        // what hangs from a node
   std::vector<double> deepest(task.view.node_count(), 0.0);  // the most that not coming back from there can save
   for (int block = 0; block < tree.blocks.count(); ++block) {
@@ -105,7 +104,7 @@ double fractional_bound(const Task& task, const Reach& reach, const ArrivalTree&
     double saved = 0;
     const auto members = tree.blocks.members(block);
     for (std::size_t i = 0; i < members.size(); ++i) {
-      const double prize = reach.prizes[members[i]];
+      const double prize = reachable.prizes[members[i]];
       if (prize > 0) items.push({tree.arrival[tree.blocks.first_member(block) + i], prize});
       merge(items, hanging[members[i]]);
       saved = std::max(saved, deepest[members[i]]);
@@ -126,7 +125,7 @@ double fractional_bound(const Task& task, const Reach& reach, const ArrivalTree&
     merge(hanging[root], items);
   }
   double left = task.limit() + deepest[task.start];
-  double prize = reach.prizes[task.start];
+  double prize = reachable.prizes[task.start];
   Items& items = hanging[task.start];
   for (; !items.empty() && left >= 0; items.pop()) {
     const Item& item = items.top();
@@ -236,7 +235,7 @@ void Knapsack::close_block(int block) {
 }
 
 // What a walk of so many steps can be worth at most in a bipartite graph; kNever where it is not bipartite.
-double colour_bound(const Task& task, const Reach& reach, double steps) {
+double colour_bound(const Task& task, const Reachable& reachable, double steps) {
   std::vector<std::int8_t> colour(task.view.node_count(), -1);
   const Graph& graph = task.view.both_ways();
   colour[task.start] = 0;
@@ -244,9 +243,9 @@ double colour_bound(const Task& task, const Reach& reach, double steps) {
   std::vector<double> prizes[2];
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const NodeId node = queue[head];
-    prizes[colour[node]].push_back(reach.prizes[node]);
+    prizes[colour[node]].push_back(reachable.prizes[node]);
     for (const NodeId next : graph.neighbours(node)) {
-      if (!reach.contains[next]) continue;
+      if (!reachable.contains[next]) continue;
       if (colour[next] == colour[node]) return kNever;
       if (colour[next] >= 0) continue;
       colour[next] = static_cast<std::int8_t>(1 - colour[node]);
@@ -267,19 +266,19 @@ double colour_bound(const Task& task, const Reach& reach, double steps) {
 }
 
 // The best way through the strongly connected components of a directed graph.
-double order_bound(const Task& task, const Reach& reach) {
+double order_bound(const Task& task, const Reachable& reachable) {
   const Graph& open = task.view.open();
-  const std::vector<int> component = strong_components(open, task.view.into(), task.start, reach.contains);
+  const std::vector<int> component = strong_components(open, task.view.into(), task.start, reachable.contains);
   const int count = 1 + *std::max_element(component.begin(), component.end());
   std::vector<std::vector<NodeId>> members(count);
-  for (const NodeId node : reach.nodes) {
+  for (const NodeId node : reachable.nodes) {
     if (component[node] >= 0) members[component[node]].push_back(node);
   }
   std::vector<double> best(count, 0.0);  // of ways that end in a component, without what it is worth itself
   double most = 0;
   for (int c = 0; c < count; ++c) {
     double here = best[c];
-    for (const NodeId node : members[c]) here += reach.prizes[node];
+    for (const NodeId node : members[c]) here += reachable.prizes[node];
     most = std::max(most, here);
     for (const NodeId node : members[c]) {
       for (const NodeId next : open.neighbours(node)) {
@@ -296,20 +295,20 @@ double order_bound(const Task& task, const Reach& reach) {
 double max_prize(const Task& task, Deadline deadline) {
   check(task);
   const Graph& open = task.view.open();
-  const Reach reach(task);
+  const Reachable reachable(task);
   double most = 0;
-  for (const NodeId node : reach.nodes) most += reach.prizes[node];
+  for (const NodeId node : reachable.nodes) most += reachable.prizes[node];
   const double steps = open.min_cost() > 0 ? std::floor(task.limit() / open.min_cost() * (1 + 1e-12)) : kNever;
-  most = std::min(most, colour_bound(task, reach, steps));
-  if (open.directed()) most = std::min(most, order_bound(task, reach));
+  most = std::min(most, colour_bound(task, reachable, steps));
+  if (open.directed()) most = std::min(most, order_bound(task, reachable));
   if (passed(deadline)) return most;
-  const ArrivalTree tree(task, reach);
-  most = std::min(most, fractional_bound(task, reach, tree));
-  if (task.view.has_prizes()) return most * (1 + kRounding);
+  const ArrivalTree tree(task, reachable);
+  most = std::min(most, fractional_bound(task, reachable, tree));
+  if (task.view.has_prizes()) return most * (1 + kPrizeRounding);
   most = std::floor(most + 1e-9);
   if (passed(deadline)) return most;
   if (const auto nodes = Knapsack(task, tree, deadline).most_visited()) {
-    most = std::min(most, *nodes + reach.prizes[task.start]);  // what was visited before counts again at worst
+    most = std::min(most, *nodes + reachable.prizes[task.start]);  // what was visited before counts again at worst
   }
   return most;
 }

@@ -16,7 +16,7 @@ constexpr double kWorthOfPlenty = 0.1;  // likewise, for each mean edge a node t
 constexpr double kPlenty = 1.2;
 constexpr double kIndifference = 0.4;  // by which the nearest may fall behind, all work being out of scope
 
-constexpr int kVisitsPerTick = 8;
+constexpr int kChoicesPerTick = 8;
 
 }  // namespace
 
@@ -94,7 +94,7 @@ FirstVisit ExplorerPlanner::nearest_first_visit(const View& view, const Explorat
 }
 
 Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Report& report) {
-  Ticker ticker(deadline, report, kVisitsPerTick);
+  Ticker ticker(deadline, report, kChoicesPerTick);
   NodeSet visited = task.visited_before();
   ExplorationState state{
       .visited = visited, .visited_count = visited.count(), .position = task.start, .spendable = task.limit()};

@@ -22,6 +22,8 @@ inline bool passed(Deadline deadline) {
   return deadline && std::chrono::steady_clock::now() >= *deadline;
 }
 
+inline constexpr double kPrizeRounding = 1e-12;  // relative, of sums of prizes in whatever order
+
 struct Plan {
   std::vector<NodeId> walk;  // every step, the start first
   int visited = 0;           // valid nodes, those before the walk among them
@@ -67,6 +69,8 @@ void require_plain_task(const Task& task, std::string_view planner);
 // Looks at the clock once in `every` units of work, and reports to whoever listens.
 class Ticker {
  public:
+  static constexpr int kNodesPerUnit = 64;  // met in a search: as much work as the unit that asked for it
+
   Ticker(Deadline deadline, const Report& report, int every) : deadline_(deadline), report_(&report), every_(every) {}
 
   // Whether the deadline has passed, after so many units of work. visited: by the walk under way.
