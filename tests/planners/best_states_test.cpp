@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
+#include <vector>
 
 #include "graphdrl/base/random.h"
 
@@ -23,6 +23,19 @@ TEST(BestStates, KeepTheCheaperOfTwoWaysToAState) {
   ASSERT_EQ(states.all().size(), 3u);
   EXPECT_EQ(states.all()[0].spent, 4);
   EXPECT_EQ(states.all()[0].rankings, (Rankings{5, 4, 4})) << "with the better of their first rankings";
+}
+
+TEST(BestStates, KeepTheLowerParentsOfTwoEquallyCheapWaysToAState) {
+  Candidate one = candidate(1, 5, {5, 5, 5});
+  Candidate other = one;
+  other.parent = 1;
+  for (const bool first : {true, false}) {
+    BestStates states(10);
+    states.add(first ? one : other);
+    states.add(first ? other : one);
+    ASSERT_EQ(states.all().size(), 1u);
+    EXPECT_EQ(states.all()[0].parent, 0);
+  }
 }
 
 TEST(BestStates, KeepAThirdByEachRanking) {
@@ -45,14 +58,19 @@ TEST(BestStates, KeepNothingUseless) {
     const std::size_t width = 1 + rng.below(12);
     BestStates all(width);
     BestStates pruned(width);
-    for (NodeId node = 0; node < 100; ++node) {
-      // Few different values: many ties.
-      const auto draw = [&] { return static_cast<double>(rng.below(8)); };
-      Candidate one = candidate(static_cast<NodeId>(rng.below(1000)), 0, {draw(), draw(), draw()}, rng.next());
-      one.parent = node / 5;
-      all.add(one);
-      if (node % 5 == 0) pruned.begin_parent();
-      if (!pruned.is_useless(one.rankings)) pruned.add(one);
+    // Parents in any order, some of them twice, as in a search that looks around each before it looks farther.
+    std::vector<int> parents;
+    for (int i = 0; i < 20; ++i) parents.push_back(static_cast<int>(rng.below(20)));
+    for (const int parent : parents) {
+      pruned.begin_parent(parent);
+      for (int i = 0; i < 5; ++i) {
+        // Few different values: many ties.
+        const auto draw = [&] { return static_cast<double>(rng.below(8)); };
+        Candidate one = candidate(static_cast<NodeId>(rng.below(100000)), 0, {draw(), draw(), draw()}, rng.next());
+        one.parent = parent;
+        all.add(one);
+        if (!pruned.is_useless(one.rankings)) pruned.add(one);
+      }
     }
     left_out += all.all().size() - pruned.all().size();
     all.keep_best();

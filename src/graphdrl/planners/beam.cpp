@@ -21,7 +21,6 @@ namespace {
 constexpr std::array<double, kRankings> kPenaltyShares = {1, 0.25, 0};
 constexpr double kUnscored = 1e9;  // ranks first visits behind all that were scored
 constexpr int kExpansionsPerTick = 64;
-constexpr int kNodesPerUnit = 64;  // met on the way: as much work as an expansion
 
 // How many partial walks of a level the scorer sees. Of 50, 6 serve as well as all in loop mazes (docs/explorer.md); by
 // the root, for a wide beam is there to look beyond the network.
@@ -59,7 +58,9 @@ class Beam {
  private:
   // Makes the candidates of every partial walk of the level; false where the time is up.
   bool expand_level(Ticker& ticker);
+  void expand_one_step(int parent);
   void expand(int parent);
+  void consider(int parent, const NodeSetView& visited, NodeId node, double cost);
   void expand_scored(int first, int end);
   Rankings rankings_of(double spent, double penalties) const;
   Rankings all_rankings(double spent, double penalties) const;
@@ -148,8 +149,12 @@ bool Beam::expand_level(Ticker& ticker) {
     first = end;
     if (ticker.tick(visited_, kExpansionsPerTick)) return false;
   }
+  // What lies next to the walks' ends shows how little of what lies farther can be kept.
+  if (!view_.open().weighted()) {
+    for (int parent = scored; parent < count; ++parent) expand_one_step(parent);
+  }
   for (int parent = scored; parent < count; ++parent) {
-    if (ticker.tick(visited_, 1 + met_ / kNodesPerUnit)) return false;
+    if (ticker.tick(visited_, 1 + met_ / Ticker::kNodesPerUnit)) return false;
     met_ = 0;
     expand(parent);
   }
@@ -181,13 +186,47 @@ double Beam::most_useful_cost(const Partial& from) const {
   return std::max({most, worst[1] - least[0], worst[2] - least[1]});
 }
 
+// Makes a candidate of a first visit, unless it cannot be kept.
+void Beam::consider(int parent, const NodeSetView& visited, NodeId node, double cost) {
+  const Partial& from = level_[parent];
+  const double spent = from.spent + cost;
+  // The node's own penalty goes, others can only rise: most candidates need no closer look.
+  const double own = leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
+  if (candidates_.is_useless(all_rankings(spent, from.penalties - own))) {
+    dropped_ = true;
+    return;
+  }
+  const double penalties = from.penalties + change_of_penalties(view_, visited, node);
+  candidates_.add({.parent = parent,
+                   .node = node,
+                   .spent = spent,
+                   .penalties = penalties,
+                   .rankings = all_rankings(spent, penalties),
+                   .visited_hash = from.hash ^ spread(node)});
+}
+
+// The part of expand() that costs 1. REQUIRES: every edge does.
+void Beam::expand_one_step(int parent) {
+  const Partial& from = level_[parent];
+  if (from.spent + 1 > limit_) return;
+  const NodeSetView visited = visited_sets_[parent];
+  candidates_.begin_parent(parent);
+  int branches = 0;
+  for (const NodeId node : view_.open_neighbours(from.position)) {
+    if (visited.contains(node)) continue;
+    if (++branches > most_branches_) return;
+    consider(parent, visited, node, 1);
+  }
+}
+
 void Beam::expand(int parent) {
   using Next = NearestFirst::Next;
   const Partial& from = level_[parent];
   const NodeSetView visited = visited_sets_[parent];
+  const double known_cost = view_.open().weighted() ? -1 : 1;  // what costs as much was considered before
   int branches = 0;
   double last_cost = 0;
-  candidates_.begin_parent();
+  candidates_.begin_parent(parent);
   double most_useful = most_useful_cost(from);
   nearest_.run(view_.open(), from.position, limit_ - from.spent, [&](NodeId node, double cost) {
     ++met_;
@@ -202,20 +241,8 @@ void Beam::expand(int parent) {
     }
     ++branches;
     last_cost = cost;
-    // The node's own penalty goes, others can only rise: most candidates need no closer look.
-    const double spent = from.spent + cost;
-    const double own = leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
-    if (candidates_.is_useless(all_rankings(spent, from.penalties - own))) {
-      dropped_ = true;
-      return Next::kPast;
-    }
-    const double penalties = from.penalties + change_of_penalties(view_, visited, node);
-    candidates_.add({.parent = parent,
-                     .node = node,
-                     .spent = spent,
-                     .penalties = penalties,
-                     .rankings = all_rankings(spent, penalties),
-                     .visited_hash = from.hash ^ spread(node)});
+    if (cost == known_cost) return Next::kPast;
+    consider(parent, visited, node, cost);
     most_useful = most_useful_cost(from);
     return Next::kPast;
   });

@@ -38,7 +38,7 @@ BestStates::BestStates(std::size_t width) : width_(width), slots_(kLeastSlots), 
 
 void BestStates::clear() {
   candidates_.clear();
-  for (Rankings* const worst : {&worst_kept_, &worst_before_, &worst_useful_}) worst->fill(kUnbounded);
+  worst_useful_.fill(kUnbounded);
   for (auto& heap : best_) heap.clear();
   if (++generation_ != 0) return;
   std::fill(slots_.begin(), slots_.end(), Slot());
@@ -58,43 +58,45 @@ void BestStates::add(const Candidate& candidate) {
   if (slot.generation == generation_) {
     Candidate& known = candidates_[slot.place];
     const double promise = std::min(candidate.rankings[0], known.rankings[0]);
-    if (candidate.spent < known.spent) known = candidate;
+    if (candidate.spent < known.spent || (candidate.spent == known.spent && candidate.parent < known.parent)) {
+      known = candidate;
+    }
     known.rankings[0] = promise;
     return;
   }
   slot = {.hash = hash, .generation = generation_, .place = static_cast<std::uint32_t>(candidates_.size())};
   candidates_.push_back(candidate);
-  note(candidate.rankings);
+  note(candidate);
   if (2 * candidates_.size() > slots_.size()) grow();
 }
 
-void BestStates::note(const Rankings& rankings) {
+void BestStates::note(const Candidate& candidate) {
   for (std::size_t i = 0; i < kRankings; ++i) {
-    std::vector<double>& heap = best_[i];
+    std::vector<Place>& heap = best_[i];
+    const Place place{candidate.rankings[i], candidate.parent};
     if (heap.size() == shares_[i]) {
-      if (rankings[i] >= heap.front()) continue;
+      if (place >= heap.front()) continue;
       std::pop_heap(heap.begin(), heap.end());
-      heap.back() = rankings[i];
+      heap.back() = place;
     } else {
-      heap.push_back(rankings[i]);
+      heap.push_back(place);
     }
     std::push_heap(heap.begin(), heap.end());
   }
-  // As long as there are fewer than will be kept, everything is.
-  if (candidates_.size() < width_) return;
-  for (std::size_t i = 0; i < kRankings; ++i) worst_kept_[i] = best_[i].front();
   update_worst_useful();
 }
 
-void BestStates::begin_parent() {
-  worst_before_ = worst_kept_;
+void BestStates::begin_parent(int parent) {
+  parent_ = parent;
   update_worst_useful();
 }
 
 void BestStates::update_worst_useful() {
+  // As long as there are fewer than will be kept, everything is.
+  if (candidates_.size() < width_) return;
   for (std::size_t i = 0; i < kRankings; ++i) {
-    const bool tied = worst_kept_[i] == worst_before_[i] && worst_kept_[i] != kUnbounded;
-    worst_useful_[i] = tied ? std::nextafter(worst_kept_[i], -kUnbounded) : worst_kept_[i];
+    const auto [ranking, parent] = best_[i].front();
+    worst_useful_[i] = parent < parent_ ? std::nextafter(ranking, -kUnbounded) : ranking;
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -38,11 +39,11 @@ class BestStates {
 
   void add(const Candidate& candidate);
 
-  // Candidates of the next parent follow. REQUIRES: parents come in ascending order.
-  void begin_parent();
+  // Candidates of this parent follow.
+  void begin_parent(int parent);
 
   // A candidate of this parent that is above this by every ranking will not be kept: enough others come before it by
-  // each. Of equals, those of earlier parents do.
+  // each. Of equals, those of lower parents do.
   const Rankings& worst_useful() const { return worst_useful_; }
   bool is_useless(const Rankings& rankings) const {
     return rankings[0] > worst_useful_[0] && rankings[1] > worst_useful_[1] && rankings[2] > worst_useful_[2];
@@ -56,12 +57,18 @@ class BestStates {
 
  private:
   static constexpr std::size_t kLeastSlots = 64;
+  // By which candidates are kept.
+  struct Place {
+    double ranking;
+    int parent;
+    auto operator<=>(const Place&) const = default;
+  };
   struct Slot {
     std::uint64_t hash = 0;
     std::uint32_t generation = 0;  // whose slot it is; an older one's is free
     std::uint32_t place = 0;
   };
-  void note(const Rankings& rankings);
+  void note(const Candidate& candidate);
   void update_worst_useful();
   void grow();
   // The slot of a state's hash: its own, or the free one where it belongs.
@@ -73,9 +80,8 @@ class BestStates {
   std::uint32_t generation_ = 0;
   // How many are kept by each ranking and those before it, and heaps of as many of the best by it, the worst on top.
   std::array<std::size_t, kRankings> shares_;
-  std::array<std::vector<double>, kRankings> best_;
-  Rankings worst_kept_{};    // by each ranking, so far
-  Rankings worst_before_{};  // likewise, of earlier parents alone
+  std::array<std::vector<Place>, kRankings> best_;
+  int parent_ = 0;
   Rankings worst_useful_{};
 };
 
