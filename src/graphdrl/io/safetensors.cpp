@@ -35,18 +35,18 @@ std::size_t dtype_size(std::string_view dtype) {
 }
 
 // One array's line of the header, checked but for its neighbours.
-Safetensors::Entry parse_entry(const std::string& source, const std::string& name, const Json& json,
+Safetensors::Entry parse_entry(const std::string& source, const std::string& name, const Json& line,
                                std::size_t data_size) {
   const std::string tensor = "tensor " + in_quotes(name);
-  if (!json.is_object() || !json.contains("dtype") || !json["dtype"].is_string() || !json.contains("shape") ||
-      !json["shape"].is_array() || !json.contains("data_offsets") || !json["data_offsets"].is_array() ||
-      json["data_offsets"].size() != 2) {
+  if (!line.is_object() || !line.contains("dtype") || !line["dtype"].is_string() || !line.contains("shape") ||
+      !line["shape"].is_array() || !line.contains("data_offsets") || !line["data_offsets"].is_array() ||
+      line["data_offsets"].size() != 2) {
     fail(source, tensor + " is not described", "dtype, shape and two data_offsets");
   }
-  Safetensors::Entry entry{.name = name, .dtype = json["dtype"], .shape = {}, .begin = 0, .end = 0};
+  Safetensors::Entry entry{.name = name, .dtype = line["dtype"], .shape = {}, .begin = 0, .end = 0};
   std::size_t size = dtype_size(entry.dtype);
   if (size == 0) fail(source, tensor + " has an unknown type", "F32, I64 and the like", in_quotes(entry.dtype));
-  for (const Json& extent : json["shape"]) {
+  for (const Json& extent : line["shape"]) {
     if (!extent.is_number_unsigned()) fail(source, tensor + " has a strange shape", "whole numbers", shortened(extent));
     const auto value = extent.get<std::uint64_t>();
     if (value > INT64_MAX || __builtin_mul_overflow(size, value, &size)) {
@@ -54,7 +54,7 @@ Safetensors::Entry parse_entry(const std::string& source, const std::string& nam
     }
     entry.shape.push_back(static_cast<std::int64_t>(value));
   }
-  const Json& offsets = json["data_offsets"];
+  const Json& offsets = line["data_offsets"];
   if (!offsets[0].is_number_unsigned() || !offsets[1].is_number_unsigned()) {
     fail(source, tensor + " has strange data_offsets", "whole numbers", shortened(offsets));
   }
