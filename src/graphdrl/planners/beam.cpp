@@ -151,7 +151,11 @@ bool Beam::expand_level(Ticker& ticker) {
   }
   // What lies next to the walks' ends shows how little of what lies farther can be kept.
   if (!view_.open().weighted()) {
-    for (int parent = scored; parent < count; ++parent) expand_one_step(parent);
+    for (int parent = scored; parent < count; ++parent) {
+      const int degree = view_.open().degree(level_[parent].position);
+      if (ticker.tick(visited_, 1 + degree / Ticker::kNodesPerUnit)) return false;
+      expand_one_step(parent);
+    }
   }
   for (int parent = scored; parent < count; ++parent) {
     if (ticker.tick(visited_, 1 + met_ / Ticker::kNodesPerUnit)) return false;
