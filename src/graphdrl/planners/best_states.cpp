@@ -75,7 +75,7 @@ void BestStates::note(const Candidate& candidate) {
     std::vector<Place>& heap = best_[i];
     const Place place{candidate.rankings[i], candidate.parent};
     if (heap.size() == shares_[i]) {
-      if (place >= heap.front()) continue;
+      if (!(place < heap.front())) continue;
       std::pop_heap(heap.begin(), heap.end());
       heap.back() = place;
     } else {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -61,7 +60,9 @@ class BestStates {
   struct Place {
     double ranking;
     int parent;
-    auto operator<=>(const Place&) const = default;
+    bool operator<(const Place& other) const {
+      return ranking != other.ranking ? ranking < other.ranking : parent < other.parent;
+    }
   };
   struct Slot {
     std::uint64_t hash = 0;
