@@ -13,6 +13,7 @@
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/exact.h"
 #include "graphdrl/planners/explorer.h"
+#include "graphdrl/planners/local_search.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/planner_policy.h"
 
@@ -86,9 +87,28 @@ std::unique_ptr<Planner> make_beam(const BeamName& name) {
   return std::make_unique<BeamPlanner>(options, scorer, std::make_unique<ExplorerPlanner>(scorer));
 }
 
+// `search[:ITERATIONS]`; empty for another name. Throws Error on a bad number.
+std::optional<std::int64_t> parse_search_name(std::string_view name) {
+  constexpr std::string_view kName = "search";
+  if (name == kName) return 0;
+  if (!name.starts_with(kName) || name[kName.size()] != ':') return std::nullopt;
+  const std::string_view text = name.substr(kName.size() + 1);
+  std::int64_t iterations = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), iterations);
+  const bool good = error == std::errc() && end == text.data() + text.size();
+  if (good && iterations >= 1 && iterations <= kMostIterations) return iterations;
+  throw Error({.what = "bad number of iterations",
+               .expected = fmt::format("search:N with N from 1 to {}", kMostIterations),
+               .got = in_quotes(name, 200)});
+}
+
 }  // namespace
 
-std::unique_ptr<Planner> make_planner(const std::string& name) {
+std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed) {
+  if (const auto iterations = parse_search_name(name)) {
+    return std::make_unique<LocalSearchPlanner>(LocalSearchOptions{.iterations = *iterations, .seed = seed},
+                                                make_explorer(builtin_explorer()));
+  }
   if (const auto beam = parse_beam_name(name)) return make_beam(*beam);
   if (const auto factory = planners().find(name); factory != planners().end()) return factory->second();
   if (random_policies().contains(name)) return nullptr;
@@ -100,7 +120,7 @@ std::unique_ptr<Planner> make_planner(const std::string& name) {
 }
 
 std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed) {
-  if (auto planner = make_planner(name)) return std::make_unique<PlannerPolicy>(std::move(planner));
+  if (auto planner = make_planner(name, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
   if (const auto factory = random_policies().find(name); factory != random_policies().end()) {
     return factory->second(seed);
   }
@@ -112,14 +132,15 @@ bool is_random(const std::string& name) {
 }
 
 std::string policy_names() {
-  std::vector<std::string> names = {"beam[:W]", "guided[:W[:FILE]]"};
+  std::vector<std::string> names = {"search[:ITERATIONS]", "beam[:W]", "guided[:W[:FILE]]"};
   for (const auto& [name, unused] : planners()) names.push_back(name);
   for (const auto& [name, unused] : random_policies()) names.push_back(name);
   return fmt::format("{} or a policy file", fmt::join(names, ", "));
 }
 
 std::string policy_label(const std::string& name) {
-  const bool known = planners().contains(name) || random_policies().contains(name) || parse_beam_name(name);
+  const bool known = planners().contains(name) || random_policies().contains(name) || parse_beam_name(name) ||
+                     parse_search_name(name);
   return known ? name : std::filesystem::path(name).stem().string();
 }
 

@@ -1,0 +1,136 @@
+#include "graphdrl/planners/local_search.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/planners/annealing.h"
+#include "graphdrl/planners/baselines.h"
+#include "graphdrl/planners/beam.h"
+#include "graphdrl/planners/bound.h"
+
+namespace graphdrl {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr int kChains = 2;           // without a deadline, whatever the number of threads
+constexpr double kStartShare = 0.05;  // of the time left, for each walk to start with but the first two
+constexpr double kBoundShare = 0.05;
+constexpr int kStepsPerLook = 16;  // at the clock; a step takes some microseconds
+constexpr int kMostThreads = 64;
+
+Deadline share_of(Deadline deadline, double share) {
+  if (!deadline) return std::nullopt;
+  const auto now = steady_clock::now();
+  return now + std::chrono::duration_cast<steady_clock::duration>(share * (*deadline - now));
+}
+
+// What a walk makes for: its targets in the order of first visits, and the costs of the ways to each, and to the end.
+struct Stops {
+  std::vector<int> order;
+  std::vector<double> links;
+};
+
+Stops stops_of(const Task& task, const Targets& targets, std::span<const NodeId> walk) {
+  Stops stops;
+  std::vector<char> taken(targets.end());
+  double cost = 0;
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    const Graph& open = task.view.open();
+    cost += open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
+    const int target = targets.target_of(walk[i]);
+    if (target <= 0 || taken[target] != 0) continue;
+    taken[target] = 1;
+    stops.order.push_back(target);
+    stops.links.push_back(cost);
+    cost = 0;
+  }
+  stops.links.push_back(task.ends_anywhere() ? 0 : cost);
+  return stops;
+}
+
+// The walk that makes for these targets, each by a cheapest way, and for the end.
+std::vector<NodeId> walk_of(const Task& task, const Targets& targets, std::span<const int> order) {
+  const Graph& open = task.view.open();
+  NearestFirst search;
+  std::vector<NodeId> walk = {task.start};
+  const auto go_to = [&](NodeId node) {
+    const NodeId here = walk.back();
+    if (node == here) return;
+    search.run(open, here, kNoLimit, [&](NodeId met, double) {
+      return met == node ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+    });
+    search.append_path_to(node, walk);
+  };
+  for (const int target : order) go_to(targets.node(target));
+  if (!task.ends_anywhere()) go_to(task.end);
+  return walk;
+}
+
+}  // namespace
+
+std::int64_t default_iterations(int targets) {
+  const auto count = static_cast<std::int64_t>(targets);
+  return std::clamp<std::int64_t>(3 * count * count, 10'000, std::max<std::int64_t>(600'000, 100 * count));
+}
+
+Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
+  check(task);
+  Plan best = plan_of_walk(task, {task.start});
+  const auto consider = [&](Planner& planner, Deadline until) {
+    Plan plan = planner.plan(task, until, report);
+    if (!passed(until)) best = better_of(std::move(best), std::move(plan));
+  };
+  NearestPlanner nearest;
+  best = better_of(nearest.plan(task, deadline, report), std::move(best));
+  const Targets targets(task, deadline);
+  const double bound = std::min(max_prize(task, share_of(deadline, kBoundShare)), targets.total_prize());
+  const auto met_bound = [&](double prize) { return prize >= bound * (1 - kPrizeRounding); };
+  DepthFirstPlanner depth_first;
+  BeamPlanner beam{BeamOptions()};
+  for (Planner* const planner : {static_cast<Planner*>(&depth_first), static_cast<Planner*>(&beam), explorer_.get()}) {
+    if (met_bound(best.prize) || passed(deadline)) break;
+    consider(*planner, share_of(deadline, kStartShare));
+  }
+
+  if (targets.complete() && targets.end() > 1 && !met_bound(best.prize) && !passed(deadline)) {
+    const Stops stops = stops_of(task, targets, best.walk);
+    const int chains = deadline ? std::min(threads(), kMostThreads) : kChains;
+    const std::int64_t in_all = options_.iterations > 0 ? options_.iterations : default_iterations(targets.end());
+    const bool endless = deadline && options_.iterations == 0;
+    const std::int64_t steps = endless ? std::numeric_limits<std::int64_t>::max() : (in_all + chains - 1) / chains;
+    // What comes after the last step takes about as long as this.
+    const auto before = steady_clock::now();
+    walk_of(task, targets, stops.order);
+    const auto begin = steady_clock::now();
+    if (deadline) *deadline -= 2 * (begin - before);
+    const double time = deadline ? std::chrono::duration<double>(*deadline - begin).count() : 0;
+    const auto caller = std::this_thread::get_id();
+    std::vector<Plan> found(chains);
+    parallel_for(chains, [&](int chain) {
+      Annealing annealing(targets, task.limit(), derive_seed(options_.seed, 0, static_cast<std::uint64_t>(chain)));
+      annealing.start(stops.order, stops.links);
+      double elapsed = 0;
+      for (std::int64_t step = 0; step < steps && !met_bound(annealing.best_prize()); ++step) {
+        if (step % kStepsPerLook == 0) {
+          if (deadline) elapsed = std::chrono::duration<double>(steady_clock::now() - begin).count() / time;
+          if (elapsed >= 1 || passed(deadline)) break;
+          if (report && std::this_thread::get_id() == caller) report({.visited = best.visited});
+        }
+        const double through = endless ? 0 : static_cast<double>(step) / static_cast<double>(steps);
+        annealing.step(std::max(elapsed, through));
+      }
+      found[chain] = plan_of_walk(task, walk_of(task, targets, annealing.best()));
+    });
+    for (Plan& plan : found) {
+      if (plan.cost <= task.limit()) best = better_of(std::move(best), std::move(plan));
+    }
+  }
+  best.bound = bound;
+  best.optimal = best.optimal || met_bound(best.prize);
+  return best;
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,128 @@
+#include "graphdrl/planners/route.h"
+
+#include <algorithm>
+
+namespace graphdrl {
+
+void Route::assign(const std::vector<int>& order, const std::vector<double>& links) {
+  const int end = targets_->end();
+  std::fill(stops_.begin(), stops_.end(), Stop());
+  cost_ = 0;
+  prize_ = targets_->prize(0) + targets_->prize(end);
+  int last = 0;
+  for (std::size_t i = 0; i <= order.size(); ++i) {
+    const int target = i < order.size() ? order[i] : end;
+    stops_[last].next = target;
+    stops_[last].link = std::min(links[i], targets_->cost(last, target));
+    stops_[target].previous = last;
+    cost_ += stops_[last].link;
+    if (target != end) prize_ += targets_->prize(target);
+    last = target;
+  }
+  renumber();
+  keep();
+}
+
+void Route::insert(int target, int after, double in, double out) {
+  changes_.push_back({Kind::kInserted, target, after, stops_[after].link, 0});
+  put(target, after, in, out);
+}
+
+void Route::remove(int target) {
+  const Stop& stop = stops_[target];
+  const double in = stops_[stop.previous].link;
+  changes_.push_back({Kind::kRemoved, target, stop.previous, in, stop.link});
+  take(target, std::min(targets_->cost(stop.previous, stop.next), in + stop.link));
+}
+
+void Route::reverse(int first, int last, double in, double out) {
+  changes_.push_back({Kind::kReversed, last, first, stops_[stops_[first].previous].link, stops_[last].link});
+  turn(first, last, in, out);
+}
+
+void Route::undo() {
+  for (; !changes_.empty(); changes_.pop_back()) {
+    const Change& change = changes_.back();
+    switch (change.kind) {
+      case Kind::kInserted:
+        take(change.target, change.in);
+        break;
+      case Kind::kRemoved:
+        put(change.target, change.other, change.in, change.out);
+        break;
+      case Kind::kReversed:
+        turn(change.target, change.other, change.in, change.out);
+        break;
+    }
+  }
+  cost_ = kept_cost_;  // to the last bit
+  prize_ = kept_prize_;
+}
+
+std::vector<int> Route::order() const {
+  std::vector<int> order;
+  for (int target = stops_[0].next; target != targets_->end(); target = stops_[target].next) order.push_back(target);
+  return order;
+}
+
+void Route::put(int target, int after, double in, double out) {
+  Stop& before = stops_[after];
+  Stop& stop = stops_[target];
+  const int next = before.next;
+  cost_ += in + out - before.link;
+  prize_ += targets_->prize(target);
+  before.next = target;
+  before.link = in;
+  stop = {.next = next, .previous = after, .link = out, .label = before.label + (stops_[next].label - before.label) / 2};
+  stops_[next].previous = target;
+  if (stop.label == before.label) renumber();
+}
+
+void Route::take(int target, double link) {
+  Stop& stop = stops_[target];
+  Stop& before = stops_[stop.previous];
+  cost_ += link - before.link - stop.link;
+  prize_ -= targets_->prize(target);
+  before.next = stop.next;
+  before.link = link;
+  stops_[stop.next].previous = stop.previous;
+  stop.next = kNone;
+}
+
+void Route::turn(int first, int last, double in, double out) {
+  const int before = stops_[first].previous;
+  const int after = stops_[last].next;
+  cost_ += in + out - stops_[before].link - stops_[last].link;
+  turned_.clear();
+  labels_.clear();
+  for (int target = first; target != after; target = stops_[target].next) {
+    turned_.push_back(target);
+    labels_.push_back(stops_[target].label);
+  }
+  int previous = before;
+  double link = in;
+  const std::size_t count = turned_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const int target = turned_[count - 1 - i];
+    stops_[previous].next = target;
+    stops_[previous].link = link;
+    stops_[target].previous = previous;
+    stops_[target].label = labels_[i];
+    // The way on is the one that led here, turned round.
+    link = i + 1 < count ? stops_[turned_[count - 2 - i]].link : out;
+    previous = target;
+  }
+  stops_[previous].next = after;
+  stops_[previous].link = link;
+  stops_[after].previous = previous;
+}
+
+void Route::renumber() {
+  std::int64_t label = 0;
+  for (int target = 0; target != targets_->end(); target = stops_[target].next, label += kGap) {
+    stops_[target].label = label;
+  }
+  stops_[targets_->end()].label = label;
+}
+
+}  // namespace graphdrl

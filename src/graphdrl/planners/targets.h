@@ -1,0 +1,67 @@
+// What a walk can go for, and what it costs to get from one to the other: the orienteering problem that a task is
+// [Golden, Levy and Vohra 1987].
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "graphdrl/planners/plan.h"
+
+namespace graphdrl {
+
+// The start is target 0; then come the unvisited nodes that are worth something, and that can be had with what is left
+// enough to get to the end; the end is the last, whether the walk must end somewhere or not. Costs are those of
+// cheapest ways. Up to kTableTargets targets there is a table of them; beyond, a target knows its nearest ones only.
+class Targets {
+ public:
+  static constexpr int kNearest = 24;         // to try when a target is put into a walk: see docs/search.md
+  static constexpr int kTableTargets = 2000;  // a table of 32 MB
+
+  // Cost: a search from every target; over the whole graph where there is a table, else up to its nearest. Gives up
+  // once the deadline passes [complete()].
+  Targets(const Task& task, Deadline deadline);
+
+  bool complete() const { return complete_; }
+  bool symmetric() const { return into_begin_.empty(); }
+  int end() const { return static_cast<int>(nodes_.size()); }  // the number of the end; how many others there are
+  NodeId node(int target) const { return nodes_[target]; }
+  int target_of(NodeId node) const { return numbers_[node]; }  // -1 where it is none, and of the end
+  double prize(int target) const { return prizes_[target]; }
+  double total_prize() const { return total_prize_; }  // of all, the end and what the start is worth among them
+
+  // The nearest targets, and those it is nearest from, which are the same where edges lead both ways. Nearest first.
+  std::span<const int> near(int target) const { return list(near_, near_begin_, target); }
+  std::span<const int> into(int target) const {
+    return symmetric() ? near(target) : list(into_, into_begin_, target);
+  }
+
+  // From a target other than the end to another; kNoLimit where it is not known, or where there is no way.
+  double cost(int from, int to) const {
+    if (to == end()) return to_end_[from];
+    if (!table_.empty()) return table_[static_cast<std::size_t>(from) * nodes_.size() + static_cast<std::size_t>(to)];
+    return near_cost(from, to);
+  }
+
+ private:
+  static std::span<const int> list(const std::vector<int>& lists, const std::vector<std::int64_t>& begin, int target) {
+    return {lists.data() + begin[target], lists.data() + begin[target + 1]};
+  }
+  double near_cost(int from, int to) const;
+  void find_near(const Graph& graph, double limit, std::vector<int>& near, std::vector<std::int64_t>& begin,
+                 std::vector<double>* costs, Deadline deadline);
+
+  std::vector<NodeId> nodes_;     // [T]
+  std::vector<int> numbers_;      // [N]
+  std::vector<double> prizes_;    // [T + 1]
+  std::vector<double> to_end_;    // [T]
+  std::vector<int> near_;         // [T, at most kNearest]
+  std::vector<double> near_cost_; // as near_; without a table only
+  std::vector<std::int64_t> near_begin_;  // [T + 1]
+  std::vector<int> into_;         // likewise, of directed graphs
+  std::vector<std::int64_t> into_begin_;
+  std::vector<double> table_;     // [T, T], or empty
+  double total_prize_ = 0;
+  bool complete_ = true;
+};
+
+}  // namespace graphdrl
