@@ -159,6 +159,11 @@ std::optional<PrizeOptimum> brute_force_prize(const Case& c, NodeId end) {
 TEST(Optimality, HoldsForEndsAndPrizes) {
   Rng rng(13);
   int compared = 0;
+  std::map<std::string, std::unique_ptr<Planner>> planners;
+  std::map<std::string, int> missed;
+  for (const char* const name : {"dfs", "nearest", "beam:8", "beam:1000", "guided:4", "explorer", "search:200"}) {
+    planners[name] = make_planner(name);
+  }
   for (int i = 0; i < 6'000; ++i) {
     SCOPED_TRACE(i);
     Case c = random_case(rng);
@@ -189,25 +194,26 @@ TEST(Optimality, HoldsForEndsAndPrizes) {
     follow_walk(episode, plan.walk);
     ASSERT_NEAR(episode.prize(), optimum->prize, 1e-9);
     ASSERT_TRUE(end == kNoNode || episode.position() == end);
+    for (const auto& [name, planner] : planners) {
+      SCOPED_TRACE(name);
+      const Plan found = planner->plan(task);
+      episode.reset(c.start);
+      follow_walk(episode, found.walk);
+      ASSERT_TRUE(end == kNoNode || found.walk.back() == end);
+      ASSERT_NEAR(episode.prize(), found.prize, 1e-9);
+      ASSERT_LE(found.prize, optimum->prize + 1e-9);
+      ASSERT_GE(found.bound, optimum->prize - 1e-9);
+      ASSERT_TRUE(!found.optimal || found.prize >= optimum->prize - 1e-9);
+      if (name == "beam:1000") {
+        ASSERT_TRUE(found.optimal);
+        ASSERT_NEAR(found.cost, optimum->cost, 1e-9);
+      }
+      missed[name] += found.prize < optimum->prize - 1e-9;
+    }
   }
   EXPECT_GT(compared, 3'000);
-}
-
-TEST(Planners, SayWhatTheyCannotPlanFor) {
-  const World world = grid_world("...\n");
-  const World prizes("prizes", Graph::grid(1, 2), std::vector<bool>(2), {}, {1, 2});
-  for (const char* const name : {"dfs", "nearest", "beam", "guided", "explorer"}) {
-    const auto planner = make_planner(name);
-    EXPECT_NE(error_of([&] {
-                planner->plan({.view = world, .start = 0, .budget = 4, .end = 2});
-              }).find("cannot plan for an end yet"),
-              std::string::npos)
-        << name;
-    EXPECT_NE(
-        error_of([&] { planner->plan({.view = prizes, .start = 0, .budget = 4}); }).find("cannot plan for prizes yet"),
-        std::string::npos)
-        << name;
-  }
+  EXPECT_LE(missed["search:200"], compared / 1000) << "search falls short of the optimum";
+  EXPECT_LE(missed["beam:8"], compared / 50);
 }
 
 TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {

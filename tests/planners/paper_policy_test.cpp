@@ -34,7 +34,7 @@ TEST(Registry, MakesPoliciesByNameAndFile) {
   const TemporaryFolder folder;
   Rng rng(1);
   write_policy_file(folder / "mine.safetensors", PaperParameters(rng));
-  for (const char* name : {"random", "random-walk", "dfs", "nearest", "exact"}) {
+  for (const char* name : {"random", "random-walk", "dfs", "nearest", "exact", "search", "search:7"}) {
     EXPECT_NE(make_policy(name, 1), nullptr);
     EXPECT_EQ(policy_label(name), name);
   }
@@ -42,8 +42,11 @@ TEST(Registry, MakesPoliciesByNameAndFile) {
   EXPECT_NE(make_policy(file, 1), nullptr);
   EXPECT_EQ(policy_label(file), "mine");
   EXPECT_THAT(error_of([] { make_policy("best", 1); }),
-              HasSubstr("expected beam[:W], guided[:W[:FILE]], dfs, exact, explorer, nearest, random, random-walk or a "
+              HasSubstr("expected search[:ITERATIONS], beam[:W], guided[:W[:FILE]], dfs, exact, explorer, nearest, random, random-walk or a "
                         "policy file, got 'best'"));
+  for (const char* const name : {"search:0", "search:", "search:x", "search:-1", "search:1.5"}) {
+    EXPECT_THAT(error_of([&] { make_policy(name, 1); }), HasSubstr("search:N with N from 1 to ")) << name;
+  }
 }
 
 }  // namespace

@@ -70,7 +70,8 @@ def test_evaluate_takes_ones_own_maps(run, tmp_path):
         "nearest",
         "explorer",
         "guided",
-        "exact",
+        "search",
+            "exact",
     ]
     assert default["rows"][0]["episodes"] == 30
     single = evaluate(run, "--maps", tmp_path / "other.txt", "--policy", "nearest", "--episodes", "1")["rows"][0]
@@ -202,7 +203,12 @@ def bad_inputs(tmp_path, policy):
             ["plan", "paper:a", "--budget", "2", "--end", "24", "--policy", "exact"],
             "the end cannot be reached within the budget",
         ),
-        (["plan", "paper:a", "--budget", "9", "--end", "start"], "explorer cannot plan for an end yet"),
+        (["plan", "paper:a", "--budget", "2", "--end", "24"], "the end cannot be reached within the budget"),
+        (["plan", "paper:a", "--budget", "9", "--iterations", "0"], "bad number of iterations"),
+        (["plan", "paper:a", "--budget", "9", "--iterations", "many"], "--iterations"),
+        (["plan", "paper:a", "--budget", "9", "--policy", "beam", "--iterations", "9"], "goes with the policy search"),
+        (["evaluate", "--maps", "paper:a", "--end", "3"], "end on an obstacle"),
+        (["evaluate", "--maps", "paper:a", "--budget", "2", "--end", "24"], "the end cannot be reached"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "-1"], "bad time limit"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "nan"], "bad time limit"),
         (["plan", tmp_path / "cost.json", "--budget", "9"], 'links[0]: bad "weight"'),
@@ -600,10 +606,40 @@ def test_an_explorer_is_trained_used_and_looked_into(run, tmp_path):
     assert "head2.weight" in run("graphdrl", "inspect", "explorer").stdout
 
 
-def test_the_explorer_is_the_default_and_guided_with_a_time_limit(run):
-    assert plan(run, "paper:a", "--budget", "25")["policy"] == "explorer"
-    assert plan(run, "paper:a", "--budget", "25", "--time-limit", "1")["policy"] == "guided"
-    assert "explorer" in {row["policy"] for row in evaluate(run, "--maps", "paper:a", "--episodes", "2")["rows"]}
+def test_search_is_the_default_and_never_below_the_explorer(run, tmp_path):
+    assert plan(run, "paper:a", "--budget", "25")["policy"] == "search"
+    limited = plan(run, "paper:a", "--budget", "18", "--end", "start", "--time-limit", "0.1")
+    assert limited["policy"] == "search" and limited["walk"][-1] == 0 and limited["visited"] == 12
+    run("graphdrl", "maps", "generate", "obstacles", "--size", "15", "--out", tmp_path / "worlds")
+    world = next((tmp_path / "worlds").iterdir())
+    found = [plan(run, world, "--budget", "1x", "--threads", threads, "--seed", "3") for threads in ("1", "2")]
+    assert found[0]["walk"] == found[1]["walk"]
+    assert found[0]["visited"] >= plan(run, world, "--budget", "1x", "--policy", "explorer")["visited"]
+    tour = plan(run, world, "--budget", "1x", "--iterations", "100", "--end", "start")
+    assert tour["policy"] == "search:100" and tour["walk"][0] == tour["walk"][-1]
+
+
+def test_an_interrupted_plan_is_printed_whole(tmp_path):
+    (tmp_path / "room.txt").write_text(("." * 60 + "\n" + ".#" * 30 + "\n") * 30)
+    command = [BIN / "graphdrl", "plan", tmp_path / "room.txt", "--budget", "0.7x", "--iterations", "1000000000", "--json"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    output, _ = process.communicate(timeout=60)
+    assert process.returncode == 130
+    result = json.loads(output)
+    assert result["cost"] <= result["budget"] and result["visited"] == len(set(result["walk"]))
+
+
+def test_evaluate_knows_ends_and_prizes(run, tmp_path):
+    nodes = [{"id": node, "prize": node} for node in range(4)]
+    links = [{"source": node, "target": node + 1} for node in range(3)]
+    (tmp_path / "path.json").write_text(json.dumps({"nodes": nodes, "links": links}))
+    arguments = ["--maps", tmp_path / "path.json", "--budget", "4", "--policy", "search", "--policy", "nearest"]
+    for end in ("anywhere", "start"):
+        rows = evaluate(run, *arguments, "--end", end, "--all-starts")["rows"]
+        assert rows[0]["mean"] == pytest.approx(rows[0]["optimum"])
+        assert rows[1]["mean"] <= rows[1]["optimum"]
 
 
 def test_odd_worlds_get_a_clear_answer(run, tmp_path):
@@ -615,7 +651,7 @@ def test_odd_worlds_get_a_clear_answer(run, tmp_path):
         {"source": 1, "target": 0, "weight": 2},
     ]
     (tmp_path / "loops.json").write_text(json.dumps({"nodes": [{"id": 0}, {"id": 1}], "links": links}))
-    for policy in ("explorer", "guided", "beam", "exact", "nearest"):
+    for policy in ("search", "explorer", "guided", "beam", "exact", "nearest"):
         assert plan(run, tmp_path / "one.txt", "--budget", "9", "--policy", policy)["coverage"] == 100
         assert plan(run, tmp_path / "one.txt", "--budget", "0", "--policy", policy)["walk"] == [0]
         parts = plan(run, tmp_path / "two.txt", "--budget", "9", "--policy", policy)

@@ -10,7 +10,7 @@ namespace graphdrl {
 namespace {
 
 struct EvaluateOptions {
-  std::vector<std::string> policies = {"random", "dfs", "nearest", "explorer", "guided", "exact"};
+  std::vector<std::string> policies = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
   std::vector<std::string> maps = {"paper"};
   std::string budget = "25";
   ComparisonOptions comparison;
@@ -70,8 +70,12 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--maps", options->maps, "paper, paper:a to paper:j, a file, or a folder; may be given again")
       ->type_name("M")
       ->capture_default_str();
-  command->add_option("--budget", options->budget, "Steps per episode, or a multiple of the valid nodes, as 1.1x")
+  command->add_option("--budget", options->budget, "What an episode may cost, or a multiple of the valid nodes, as 1.1x")
       ->type_name("B")
+      ->capture_default_str();
+  command->add_option("--end", options->comparison.end, "Where walks must end: anywhere, start, or a node")
+      ->check(not_empty())
+      ->type_name("E")
       ->capture_default_str();
   CLI::Option* const episodes =
       command->add_option("--episodes", options->comparison.episodes, "Episodes per map, from random starts")

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <stdexcept>
 
@@ -33,7 +34,8 @@ struct PlanOptions {
   std::string budget;
   std::string start;
   std::string end = "anywhere";
-  std::string policy = "explorer";
+  std::string policy = "search";
+  std::optional<std::int64_t> iterations;
   std::optional<double> time_limit_s;
   std::uint64_t seed = 1;
   bool json = false;
@@ -58,8 +60,11 @@ class PlanDisplay {
   ~PlanDisplay() { display_.finish(); }
 
   void show(const PlanProgress& progress) {
-    if (seconds_since(begin_) < kProgressAfterS) return;
-    display_.show(progress.visited, valid_count_, "nodes visited");
+    const double elapsed_s = seconds_since(begin_);
+    if (elapsed_s < kProgressAfterS) return;
+    const std::string bound = progress.bound <= valid_count_ ? fmt::format(", bound {:.0f}", progress.bound) : "";
+    display_.show_line(fmt::format("{} of {} nodes{}  {:.0f} s", progress.visited, valid_count_, bound, elapsed_s),
+                       static_cast<double>(progress.visited) / valid_count_);
   }
 
  private:
@@ -100,8 +105,10 @@ Answer make_plan(const World& world, const Task& task, const PlanOptions& option
   PlanDisplay display(world);
   const Report report = [&](const PlanProgress& progress) { display.show(progress); };
   Answer answer{};
-  const double bound = max_prize(task, deadline(kBoundShare));
-  if (const auto planner = make_planner(options.policy)) {
+  const auto planner = make_planner(options.policy, options.seed);
+  const bool bounds = planner != nullptr && planner->bounds();
+  const double bound = bounds ? kNoLimit : max_prize(task, deadline(kBoundShare));
+  if (planner != nullptr) {
     answer.plan = planner->plan(task, deadline(kPlanShare), report);
   } else {
     answer.plan = plan_by_steps(world, task, *make_policy(options.policy, options.seed), deadline(kPlanShare), report);
@@ -199,13 +206,31 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
   return text;
 }
 
-End parse_end(const World& world, const std::string& text) {
-  if (text == "anywhere") return End::anywhere();
-  if (text == "start") return End::at_start();
-  return End::at(parse_node(world, text, "end"));
+volatile std::sig_atomic_t stop_signal = 0;
+
+extern "C" void stop_on_signal(int signal) {
+  stop_signal = signal;
+  stop_planning();
 }
 
-void plan(const PlanOptions& options) {
+// The first signal ends the planning, and the best walk so far is printed; the second one ends the program.
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = stop_on_signal;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+// The policy's name, with the iterations asked for.
+std::string policy_of(const PlanOptions& options) {
+  if (!options.iterations) return options.policy;
+  if (options.policy == "search") return fmt::format("search:{}", *options.iterations);
+  throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(options.policy, 200)});
+}
+
+void plan(PlanOptions options) {
+  options.policy = policy_of(options);
   if (options.time_limit_s && !(*options.time_limit_s >= 0 && *options.time_limit_s <= kMostSeconds)) {
     throw Error({.what = "bad time limit",
                  .expected = fmt::format("0 to {:.0f} seconds", kMostSeconds),
@@ -218,12 +243,14 @@ void plan(const PlanOptions& options) {
                   .start = start,
                   .budget = Budget::parse(options.budget).cost_in(world),
                   .end = parse_end(world, options.end).of(start)};
+  catch_signals();
   const Answer answer = make_plan(world, task, options);
   if (options.json) {
     print_json(to_json(world, task, options, answer));
   } else {
     print_text(format_plan(world, task, options, answer));
   }
+  if (stop_signal != 0) throw CLI::RuntimeError(128 + stop_signal);
 }
 
 }  // namespace
@@ -249,22 +276,21 @@ void add_plan_command(CLI::App& app) {
       ->check(not_empty())
       ->type_name("E")
       ->capture_default_str();
-  CLI::Option* const policy =
-      command->add_option("--policy", options->policy, policy_names() + "; guided with a time limit")
-          ->type_name("P")
-          ->capture_default_str();
+  command->add_option("--policy", options->policy, policy_names())->type_name("P")->capture_default_str();
+  command
+      ->add_option("--iterations", options->iterations,
+                   "Of search: how many steps to take in all; the default depends on the size of the world")
+      ->type_name("N");
   command
       ->add_option(
           "--time-limit", options->time_limit_s,
-          "Seconds for a plan, the bound included: beams search wider and wider, others stop with what they have")
+          "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, others stop "
+          "with what they have")
       ->type_name("S");
-  add_seed_option(*command, options->seed, "For random policies");
+  add_seed_option(*command, options->seed, "For search and for random policies");
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
-  command->callback([options, policy] {
-    if (options->time_limit_s && policy->count() == 0) options->policy = "guided";
-    plan(*options);
-  });
+  command->callback([options] { plan(*options); });
 }
 
 }  // namespace graphdrl

@@ -2,7 +2,7 @@
 // the moves it has, first visits.
 #pragma once
 
-#include "graphdrl/env/view.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/graph/node_set.h"
 
 namespace graphdrl {
@@ -11,7 +11,12 @@ struct ExplorationState {
   NodeSetView visited;
   int visited_count;
   NodeId position;
-  double spendable;  // in units of cost
+  double spendable;                    // in units of cost
+  const CostToEnd* to_end = nullptr;  // null where it may end anywhere
+
+  double cost_to_end(NodeId node) const { return to_end == nullptr ? 0 : (*to_end)(node); }
+  // What is left to spend beyond the way to the end.
+  double free_to_spend() const { return spendable - cost_to_end(position); }
 };
 
 // A move: a walk to an unvisited node next to visited ground, by the cheapest way through visited ground.

@@ -64,4 +64,10 @@ NodeId parse_node(const World& world, std::string_view text, std::string_view ro
                .where = world.name()});
 }
 
+End parse_end(const World& world, std::string_view text) {
+  if (text == "anywhere") return End::anywhere();
+  if (text == "start") return End::at_start();
+  return End::at(parse_node(world, text, "end"));
+}
+
 }  // namespace graphdrl

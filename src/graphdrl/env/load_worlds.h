@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "graphdrl/env/world.h"
+#include "graphdrl/env/task.h"
 
 namespace graphdrl {
 
@@ -19,5 +19,8 @@ World load_one_world(const std::string& source);
 // grid. A number is no node id in a world with labels, where it could be either. Throws Error, with the node's role
 // ("start"), where it is no valid node of the world.
 NodeId parse_node(const World& world, std::string_view text, std::string_view role);
+
+// Where walks must end, as users say it: "anywhere", "start", or a node as for parse_node(). Throws Error.
+End parse_end(const World& world, std::string_view text);
 
 }  // namespace graphdrl

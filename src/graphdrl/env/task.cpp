@@ -24,6 +24,10 @@ void check_node(const View& view, NodeId node, const char* role) {
 
 }  // namespace
 
+CostToEnd::CostToEnd(const Task& task) {
+  if (!task.ends_anywhere()) costs_ = costs_to(task.view.into(), task.end);
+}
+
 void check(const Task& task) {
   check_node(task.view, task.start, "start");
   if (task.ends_anywhere()) return;

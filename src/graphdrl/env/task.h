@@ -1,6 +1,8 @@
 // What a planner is asked: where a walk begins, where it must end, and what it may spend.
 #pragma once
 
+#include <vector>
+
 #include "graphdrl/env/view.h"
 #include "graphdrl/graph/node_set.h"
 
@@ -42,6 +44,19 @@ struct Task {
     set.insert(start);
     return set;
   }
+};
+
+// What it costs to get from a node to where a task's walk must end; nothing where it may end anywhere.
+class CostToEnd {
+ public:
+  CostToEnd() = default;
+  // Cost: a search of the whole graph, where there is an end.
+  explicit CostToEnd(const Task& task);
+
+  double operator()(NodeId node) const { return costs_.empty() ? 0 : costs_[node]; }
+
+ private:
+  std::vector<double> costs_;  // [N], or empty
 };
 
 // Throws Error where a walk has no place for its start or end: blocked, not in the world, or an end out of reach.

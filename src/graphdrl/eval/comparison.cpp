@@ -8,6 +8,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/base/random.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/exact.h"
 #include "graphdrl/planners/registry.h"
@@ -37,9 +38,14 @@ constexpr std::uint64_t kBlockSeeds = 3;  // of a map's policy seed
 struct Arena {
   World world;
   double budget;
+  End end;
   std::vector<NodeId> starts;     // one per episode
   std::optional<double> optimum;  // percent
 };
+
+double percent_of_all(const World& world, double prize) {
+  return world.total_prize() > 0 ? 100.0 * prize / world.total_prize() : 100.0;
+}
 
 std::optional<double> mean_optimum(const Arena& arena) {
   const int nodes = arena.world.valid_count();
@@ -49,9 +55,10 @@ std::optional<double> mean_optimum(const Arena& arena) {
   for (const NodeId start : arena.starts) {
     const auto [known, fresh] = by_start.try_emplace(start);
     if (fresh) {
-      const auto visited = exact_prize({.view = arena.world, .start = start, .budget = arena.budget});
-      if (!visited) return std::nullopt;
-      known->second = 100.0 * *visited / nodes;
+      const Task task{.view = arena.world, .start = start, .budget = arena.budget, .end = arena.end.of(start)};
+      const auto prize = exact_prize(task);
+      if (!prize) return std::nullopt;
+      known->second = percent_of_all(arena.world, *prize);
     }
     sum += known->second;
   }
@@ -73,13 +80,16 @@ std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& opt
 std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
-    if (world.has_prizes()) {
-      throw Error({.what = "evaluate knows no prizes yet", .expected = "graphdrl plan", .where = world.name()});
-    }
     arenas.push_back({.world = world,
                       .budget = options.budget.cost_in(world),
+                      .end = parse_end(world, options.end),
                       .starts = draw_starts(world, options, arenas.size()),
                       .optimum = {}});
+  }
+  for (const Arena& arena : arenas) {
+    for (const NodeId start : arena.starts) {
+      check({.view = arena.world, .start = start, .budget = arena.budget, .end = arena.end.of(start)});
+    }
   }
   parallel_for(static_cast<int>(arenas.size()), [&](int i) { arenas[i].optimum = mean_optimum(arenas[i]); });
   return arenas;
@@ -135,11 +145,12 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
                                     derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0])));
     std::vector<NodeId> starts;
     for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
-    const EpisodeOptions episode_options{.budget = arena.budget, .action_space = action_space_of(arena.world)};
+    const EpisodeOptions episode_options{
+        .budget = arena.budget, .end = arena.end, .action_space = action_space_of(arena.world)};
     try {
       const auto results = roll_out(arena.world, starts, episode_options, *policy);
       for (std::size_t i = 0; i < results.size(); ++i) {
-        coverages[block.policy][block.map][block.episodes[i]] = 100.0 * results[i].coverage;
+        coverages[block.policy][block.map][block.episodes[i]] = percent_of_all(arena.world, results[i].prize);
       }
     } catch (const SearchOutOfReach&) {
       out_of_reach[b] = 1;

@@ -24,6 +24,7 @@ std::optional<PaperResult> paper_result(const std::string& map, double budget);
 struct ComparisonOptions {
   std::vector<std::string> policies;  // as make_policy takes them
   Budget budget = Budget::parse("25");
+  std::string end = "anywhere";  // as parse_end() takes it
   int episodes = 30;        // per map, from random starts, the same for every policy
   bool all_starts = false;  // instead: every valid node once
   std::uint64_t seed = 1;
@@ -31,7 +32,7 @@ struct ComparisonOptions {
 
 inline constexpr int kOptimumMaxNodes = 25;  // valid nodes up to which the optimum is computed
 
-// Coverages in percent.
+// Coverages in percent; where there are prizes, of their sum.
 struct ComparisonRow {
   std::string map;
   std::string policy;

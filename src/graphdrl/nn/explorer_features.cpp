@@ -180,6 +180,7 @@ void ExplorerEncoder::find_first_visits(const View& view, const ExplorationState
     }
     ++searched;
     if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
+    if (cost + state.cost_to_end(node) > state.spendable) return NearestFirst::Next::kPast;
     visits_.push_back({node, cost});
     if (const int index = local(node); index >= 0) {
       visit_cost_[index] = cost / unit_;
@@ -316,7 +317,7 @@ Graph ExplorerEncoder::scope_graph(const View& view) const {
 void ExplorerEncoder::append_nodes(const View& view, const ExplorationState& state, ExplorerBatch& batch) {
   const Graph& open = view.open();
   const Graph& into = view.into();
-  const BudgetView budget(share_ * state.spendable / unit_, share_ * work_);
+  const BudgetView budget(share_ * state.free_to_spend() / unit_, share_ * work_);
   batch.graphs.add(batch.scopes.emplace_back(scope_graph(view)));
   const Graph& scope = batch.scopes.back();
   for (std::size_t row = 0; row < seen_.size(); ++row) {
@@ -356,7 +357,7 @@ void ExplorerEncoder::append_nodes(const View& view, const ExplorationState& sta
 }
 
 void ExplorerEncoder::append_visits(const View& view, const ExplorationState& state, ExplorerBatch& batch) {
-  const double budget = state.spendable / unit_;
+  const double budget = state.free_to_spend() / unit_;
   const int first_row = batch.graphs.first_node(batch.graphs.graph_count() - 1);
   for (const FirstVisit& visit : visits_) {
     const int i = local(visit.node);

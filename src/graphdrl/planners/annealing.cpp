@@ -10,17 +10,18 @@ namespace {
 constexpr double kPrice = 0.6;  // of a share of the budget, in shares of the prize
 constexpr double kFirstTemperature = 1;
 constexpr double kLastTemperature = 0.08;
-constexpr int kMostStrings = 3;
+constexpr double kNoStringShare = 0.5;  // of steps that only turn a part of the route round
+constexpr int kMostStrings = 2;
 constexpr int kShort = 5;  // how long a string is at most, mostly
 constexpr int kLong = 40;  // and sometimes: a branch of a maze or of a tree
-constexpr double kLongShare = 0.1;
-constexpr double kTurnShare = 0.7;  // of steps with a random reversal
+constexpr double kLongShare = 0.06;
 constexpr double kBlink = 0.03;     // of places passed over
 constexpr int kTwoOptNear = 10;
-constexpr int kTurnNear = 8;
+constexpr int kTurnNear = 5;
 constexpr int kTurnTries = 4;
 constexpr int kLooks = 256;  // at most one copy of the best route in T / kLooks steps
 constexpr double kRounding = 1e-9;
+constexpr double kTiny = 1e-300;
 
 }  // namespace
 
@@ -44,7 +45,7 @@ void Annealing::step(double progress) {
   const auto targets = static_cast<std::uint32_t>(targets_->end());
   const int seed = static_cast<int>(rng_.below(targets));
   ruin(seed);
-  if (targets_->symmetric() && rng_.uniform() < kTurnShare) turn_near(seed);
+  if (targets_->symmetric()) turn_near(seed);
   recreate(seed);
   if (targets_->symmetric()) improve();
   const double temperature = unit_ * kFirstTemperature * std::pow(kLastTemperature / kFirstTemperature, progress);
@@ -78,6 +79,7 @@ bool Annealing::accept(double temperature) {
 // Takes out strings of targets that stand together and contain one near the seed.
 void Annealing::ruin(int seed) {
   out_.clear();
+  if (targets_->symmetric() && rng_.uniform() < kNoStringShare) return;
   int strings = 1 + static_cast<int>(rng_.below(kMostStrings));
   const std::uint32_t longest = rng_.uniform() < kLongShare ? kLong : kShort;
   const auto take_string = [&](int target) {
@@ -149,36 +151,52 @@ void Annealing::recreate(int seed) {
   for (const int target : out_) put_back(target);
 }
 
-bool Annealing::put_back(int target) {
-  int best = -1;
-  double least = kNoLimit;
-  double best_in = 0;
-  double best_out = 0;
-  const bool symmetric = targets_->symmetric();
-  const auto consider = [&](int after) {
-    const int next = route_.next(after);
-    const double link = route_.link(after);
-    double in = symmetric ? targets_->cost(target, after) : targets_->cost(after, target);
-    double out = targets_->cost(target, next);
-    // Of the ways that are not known, the one by way of the other neighbour is.
-    if (symmetric && out == kNoLimit) out = in + link;
-    if (symmetric && in == kNoLimit) in = link + out;
-    if (in + out - link >= least || rng_.next() < static_cast<std::uint64_t>(kBlink * 0x1p64)) return;
-    least = in + out - link;
-    best = after;
-    best_in = in;
-    best_out = out;
+// The cheapest place for a target that can be paid for; after == kNone where there is none.
+Annealing::Place Annealing::cheapest_place(int target) {
+  Place best{.after = kNone, .added = (limit_ - route_.cost()) * (1 + kRounding) + kTiny};
+  const auto consider = [&](int after, double in, double out) {
+    const double added = in + out - route_.link(after);
+    if (added >= best.added || rng_.next() < static_cast<std::uint64_t>(kBlink * 0x1p64)) return;
+    best = {.after = after, .added = added, .in = in, .out = out};
   };
-  for (const int near : targets_->into(target)) {
-    if (route_.contains(near)) consider(near);
+  const int last = route_.previous(targets_->end());
+  if (targets_->symmetric()) {
+    // The nearest come first. Of two neighbours in the route the nearer one comes first, so by a later one the way
+    // there and back is the least that a place costs, less the way that it saves.
+    for (const int near : targets_->near(target)) {
+      if (!route_.contains(near)) continue;
+      const double there = targets_->cost(target, near);
+      const double there_and_back = there + there;
+      if (const double link = route_.link(near); there_and_back - link < best.added && near != last) {
+        const double out = targets_->cost(target, route_.next(near));
+        consider(near, there, out == kNoLimit ? there + link : out);
+      }
+      if (near == 0) continue;
+      const int before = route_.previous(near);
+      if (const double link = route_.link(before); there_and_back - link < best.added) {
+        const double in = targets_->cost(target, before);
+        consider(before, in == kNoLimit ? link + there : in, there);
+      }
+      if (best.added <= 0) break;
+    }
+  } else {
+    for (const int near : targets_->into(target)) {
+      if (route_.contains(near)) consider(near, targets_->cost(near, target), targets_->cost(target, route_.next(near)));
+    }
+    for (const int near : targets_->near(target)) {
+      if (near == 0 || !route_.contains(near)) continue;
+      const int before = route_.previous(near);
+      consider(before, targets_->cost(before, target), targets_->cost(target, near));
+    }
   }
-  for (const int near : targets_->near(target)) {
-    if (near != 0 && route_.contains(near)) consider(route_.previous(near));
-  }
-  consider(route_.previous(targets_->end()));
-  if (best < 0 || route_.cost() + least > limit_) return false;
-  route_.insert(target, best, best_in, best_out);
-  return true;
+  consider(last, targets_->cost(last, target), targets_->cost(target, targets_->end()));
+  return best;
+}
+
+void Annealing::put_back(int target) {
+  const Place place = cheapest_place(target);
+  if (place.after == kNone || route_.cost() + place.added > limit_) return;
+  route_.insert(target, place.after, place.in, place.out);
 }
 
 void Annealing::enqueue(int target) {

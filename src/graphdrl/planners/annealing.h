@@ -9,10 +9,10 @@
 
 namespace graphdrl {
 
-// Simulated annealing over routes. Each step takes up to three strings of a route's targets near a random one out,
-// sometimes turns a part of the route round, puts what fits back at its cheapest place, in random order, and improves
-// what changed by 2-opt. What comes out is accepted by the rule of Metropolis; its worth is its prize, less a price of
-// its cost.
+// Simulated annealing over routes. Each step goes to a random target. It takes up to two strings of the route's targets
+// near it out, turns a part of the route round there, puts what fits back at its cheapest place, in random order, and
+// improves what changed by 2-opt. What comes out is accepted by the rule of Metropolis; its worth is its prize, less a
+// price of its cost. Where edges lead one way, nothing is turned round.
 class Annealing {
  public:
   Annealing(const Targets& targets, double limit, std::uint64_t seed);
@@ -26,13 +26,22 @@ class Annealing {
   // The best route up to now.
   const std::vector<int>& best();
   double best_prize() const { return best_prize_; }
-  double best_cost() const { return best_cost_; }
+  int best_visits() const { return static_cast<int>(best_.size()); }
 
  private:
+  static constexpr int kNone = -1;
+  struct Place {  // for a target
+    int after;
+    double added;  // to the cost of the route
+    double in = 0;
+    double out = 0;
+  };
+
   void ruin(int seed);
   void turn_near(int target);
   void recreate(int seed);
-  bool put_back(int target);
+  Place cheapest_place(int target);
+  void put_back(int target);
   void improve();
   bool two_opt(int target);
   bool accept(double temperature);

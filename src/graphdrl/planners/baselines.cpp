@@ -23,6 +23,7 @@ class DepthFirstWalk {
  public:
   DepthFirstWalk(const Task& task, NearestFirst& search)
       : open_(task.view.open()),
+        to_end_(task),
         search_(search),
         spendable_(task.limit()),
         visited_(task.visited_before()),
@@ -100,7 +101,7 @@ class DepthFirstWalk {
   // False where it cannot be paid for.
   bool step_to(NodeId next) {
     spendable_ -= open_.cost(walk_.back(), open_.index_of(walk_.back(), next));
-    if (spendable_ < 0) return false;
+    if (spendable_ < to_end_(next)) return false;
     walk_.push_back(next);
     return true;
   }
@@ -118,6 +119,7 @@ class DepthFirstWalk {
   }
 
   const Graph& open_;
+  CostToEnd to_end_;
   NearestFirst& search_;
   double spendable_;
   NodeSet visited_;
@@ -148,17 +150,20 @@ void RandomWalkPolicy::act(std::span<const Observation> observations, std::span<
 }
 
 Plan DepthFirstPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  require_plain_task(task, "dfs");
+  check(task);
   Ticker ticker(deadline, report, kVisitsPerTick);
   DepthFirstWalk walk(task, search_);
   while (walk.advance()) {
     if (ticker.tick(walk.visits())) break;
   }
-  return plan_of_walk(task, std::move(walk).take_walk());
+  std::vector<NodeId> steps = std::move(walk).take_walk();
+  append_way_to_end(task, steps, search_);
+  return plan_of_walk(task, std::move(steps));
 }
 
 Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  require_plain_task(task, "nearest");
+  check(task);
+  const CostToEnd to_end(task);
   using Next = NearestFirst::Next;
   Ticker ticker(deadline, report, kVisitsPerTick);
   NodeSet visited = task.visited_before();
@@ -171,7 +176,8 @@ Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& rep
     met = 0;
     search_.run(task.view.open(), walk.back(), spendable, [&](NodeId node, double cost) {
       ++met;
-      if (visited.contains(node)) return Next::kThrough;
+      if (visited.contains(node) || task.view.prize(node) <= 0) return Next::kThrough;
+      if (cost + to_end(node) > spendable) return Next::kPast;
       goal = node;
       spendable -= cost;
       return Next::kEnd;
@@ -181,6 +187,7 @@ Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& rep
     visited.insert(goal);
     ++visits;
   } while (!ticker.tick(visits, 1 + met / Ticker::kNodesPerUnit));
+  append_way_to_end(task, walk, search_);
   return plan_of_walk(task, std::move(walk));
 }
 

@@ -32,6 +32,7 @@ struct Partial {
   NodeId position;
   std::int64_t trail;  // its last first visit in the list of all kept ones
   double spent;
+  double prize;      // of its first visits; 0 where all prizes are 1
   double penalties;  // sum over the unvisited nodes
   std::uint64_t hash;
 };
@@ -66,12 +67,22 @@ class Beam {
   Rankings all_rankings(double spent, double penalties) const;
   double most_useful_cost(const Partial& from) const;
   void keep_best();
+  void note_best();
   Plan best_plan(bool complete);
+
+  // What rankings count as spent: less what the prizes would cost, where there are any.
+  double priced(const Partial& from, NodeId node, double spent) const {
+    return view_.has_prizes() ? spent - worth_ * (from.prize + view_.prize(node)) : spent;
+  }
 
   const Task& task_;
   const View& view_;
+  CostToEnd to_end_;
   double limit_;
   double unit_;
+  double worth_ = 0;       // of a unit of prize, in units of cost
+  double mean_prize_ = 1;
+  double most_prize_ = 0;  // of one node
   int width_;
   int branching_;
   int most_branches_;         // among equally near ones
@@ -83,6 +94,7 @@ class Beam {
   NearestFirst nearest_;
 
   std::vector<Partial> level_;
+  Partial best_{};
   VisitedSets visited_sets_;
   BestStates candidates_;
   std::vector<Link> trail_;
@@ -95,6 +107,7 @@ class Beam {
 Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer)
     : task_(task),
       view_(task.view),
+      to_end_(task),
       limit_(task.limit()),
       unit_(view_.open().mean_cost()),
       width_(options.width),
@@ -105,7 +118,12 @@ Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* score
       visited_(0),
       visited_sets_(task.visited_before(), view_.node_count()),
       candidates_(static_cast<std::size_t>(width_)) {
-  Partial root{.position = task.start, .trail = -1, .spent = 0, .penalties = 0, .hash = 0};
+  Partial root{.position = task.start, .trail = -1, .spent = 0, .prize = 0, .penalties = 0, .hash = 0};
+  if (view_.has_prizes() && view_.total_prize() > 0) {
+    worth_ = limit_ / view_.total_prize();
+    mean_prize_ = view_.total_prize() / view_.valid_count();
+    for (const NodeId node : view_.valid_nodes()) most_prize_ = std::max(most_prize_, view_.prize(node));
+  }
   const NodeSetView visited = visited_sets_[0];
   for (const NodeId node : view_.valid_nodes()) {
     if (visited.contains(node)) {
@@ -117,12 +135,15 @@ Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* score
     root.penalties += leftover_penalty(neighbours);
   }
   level_.assign(1, root);
+  best_ = root;
 }
 
 Plan Beam::run(Deadline deadline, const Report& report) {
   Ticker ticker(deadline, report, kExpansionsPerTick);
-  // Every partial walk of a level has visited as many nodes: the cheapest of the last level is the answer.
+  // Every partial walk of a level has visited as many nodes: the cheapest of the last level is the answer, but where
+  // there are prizes.
   for (;;) {
+    note_best();
     candidates_.clear();
     if (!expand_level(ticker)) return best_plan(/*complete=*/false);
     if (candidates_.empty()) return best_plan(/*complete=*/true);
@@ -131,11 +152,19 @@ Plan Beam::run(Deadline deadline, const Report& report) {
   }
 }
 
+// Of the level, unless an older one is worth more.
+void Beam::note_best() {
+  const auto cost = [&](const Partial& partial) { return partial.spent + to_end_(partial.position); };
+  const auto level_best = std::min_element(level_.begin(), level_.end(), [&](const Partial& a, const Partial& b) {
+    return a.prize != b.prize ? a.prize > b.prize : cost(a) < cost(b);
+  });
+  const bool better = level_best->prize != best_.prize ? level_best->prize > best_.prize : cost(*level_best) < cost(best_);
+  if (!view_.has_prizes() || better) best_ = *level_best;
+}
+
 Plan Beam::best_plan(bool complete) {
-  const auto best = std::min_element(level_.begin(), level_.end(),
-                                     [](const Partial& a, const Partial& b) { return a.spent < b.spent; });
   std::vector<NodeId> order;
-  for (std::int64_t trail = best->trail; trail >= 0; trail = trail_[trail].before) order.push_back(trail_[trail].node);
+  for (std::int64_t trail = best_.trail; trail >= 0; trail = trail_[trail].before) order.push_back(trail_[trail].node);
   std::reverse(order.begin(), order.end());
   return plan_of_walk(task_, walk_through(task_, order, nearest_), complete && !dropped_);
 }
@@ -181,12 +210,13 @@ Rankings Beam::all_rankings(double spent, double penalties) const {
 double Beam::most_useful_cost(const Partial& from) const {
   double most = 0;
   const Rankings& worst = candidates_.worst_useful();
-  const Rankings least = rankings_of(from.spent, from.penalties - kIsolatedPenalty);
+  const double spent = from.spent - worth_ * (from.prize + most_prize_);
+  const Rankings least = rankings_of(spent, from.penalties - kIsolatedPenalty);
   if (scorer_ == nullptr) {
     for (std::size_t i = 0; i < worst.size(); ++i) most = std::max(most, worst[i] - least[i]);
     return most;
   }
-  most = (worst[0] - kUnscored) * unit_ - from.spent;
+  most = (worst[0] - kUnscored) * unit_ - spent;
   return std::max({most, worst[1] - least[0], worst[2] - least[1]});
 }
 
@@ -194,9 +224,10 @@ double Beam::most_useful_cost(const Partial& from) const {
 void Beam::consider(int parent, const NodeSetView& visited, NodeId node, double cost) {
   const Partial& from = level_[parent];
   const double spent = from.spent + cost;
+  const double to_rank = priced(from, node, spent);
   // The node's own penalty goes, others can only rise: most candidates need no closer look.
   const double own = leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
-  if (candidates_.is_useless(all_rankings(spent, from.penalties - own))) {
+  if (candidates_.is_useless(all_rankings(to_rank, from.penalties - own))) {
     dropped_ = true;
     return;
   }
@@ -205,7 +236,7 @@ void Beam::consider(int parent, const NodeSetView& visited, NodeId node, double 
                    .node = node,
                    .spent = spent,
                    .penalties = penalties,
-                   .rankings = all_rankings(spent, penalties),
+                   .rankings = all_rankings(to_rank, penalties),
                    .visited_hash = from.hash ^ spread(node)});
 }
 
@@ -217,7 +248,7 @@ void Beam::expand_one_step(int parent) {
   candidates_.begin_parent(parent);
   int branches = 0;
   for (const NodeId node : view_.open_neighbours(from.position)) {
-    if (visited.contains(node)) continue;
+    if (visited.contains(node) || from.spent + 1 + to_end_(node) > limit_) continue;
     if (++branches > most_branches_) return;
     consider(parent, visited, node, 1);
   }
@@ -239,6 +270,7 @@ void Beam::expand(int parent) {
       return Next::kEnd;
     }
     if (visited.contains(node)) return Next::kThrough;
+    if (from.spent + cost + to_end_(node) > limit_) return Next::kPast;
     if (branches >= most_branches_ || (branches >= branching_ && cost > last_cost)) {
       dropped_ = true;
       return Next::kEnd;
@@ -259,7 +291,8 @@ void Beam::expand_scored(int first, int end) {
     states_.push_back({.visited = visited_sets_[parent],
                        .visited_count = visited_,
                        .position = from.position,
-                       .spendable = limit_ - from.spent});
+                       .spendable = limit_ - from.spent,
+                       .to_end = &to_end_});
   }
   dropped_ = scorer_->score(view_, states_, scored_) || dropped_;
   for (const ScoredVisit& scored : scored_) {
@@ -268,12 +301,13 @@ void Beam::expand_scored(int first, int end) {
     const double spent = from.spent + scored.visit.cost;
     const double penalties =
         from.penalties + change_of_penalties(view_, states_[scored.state].visited, scored.visit.node);
-    const Rankings plain = rankings_of(spent, penalties);
+    const Rankings plain = rankings_of(priced(from, scored.visit.node, spent), penalties);
+    const double prize = view_.has_prizes() ? (from.prize + view_.prize(scored.visit.node)) / mean_prize_ : 0;
     candidates_.add({.parent = parent,
                      .node = scored.visit.node,
                      .spent = spent,
                      .penalties = penalties,
-                     .rankings = {scored.score, plain[0], plain[1]},
+                     .rankings = {scored.score - prize, plain[0], plain[1]},
                      .visited_hash = from.hash ^ spread(scored.visit.node)});
   }
 }
@@ -288,9 +322,11 @@ void Beam::keep_best() {
   for (const Candidate& candidate : candidates_.all()) {
     trail_.push_back({candidate.node, level_[candidate.parent].trail});
     children_.push_back({candidate.parent, candidate.node});
+    const double prize = view_.has_prizes() ? level_[candidate.parent].prize + view_.prize(candidate.node) : 0;
     next_level_.push_back({.position = candidate.node,
                            .trail = std::ssize(trail_) - 1,
                            .spent = candidate.spent,
+                           .prize = prize,
                            .penalties = candidate.penalties,
                            .hash = candidate.visited_hash});
   }
@@ -312,7 +348,7 @@ double bytes_needed(const View& view, const BeamOptions& options, const FirstVis
 
 Plan beam_plan(const Task& task, const BeamOptions& options, Deadline deadline, FirstVisitScorer* scorer,
                const Report& report) {
-  require_plain_task(task, scorer == nullptr ? "beam" : "guided");
+  check(task);
   const double bytes = bytes_needed(task.view, options, scorer);
   if (bytes > kMaxBeamBytes) {
     throw Error({.what = "the beam is too wide for this world",
@@ -351,7 +387,7 @@ Plan BeamPlanner::search_until(const Task& task, Deadline deadline, const Report
 }
 
 Plan BeamPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  require_plain_task(task, scorer_ == nullptr ? "beam" : "guided");
+  check(task);
   if (!deadline) return search_once(task, options_, {}, report);
   return plan_by_deadline(task, deadline, [&](Deadline until) { return search_until(task, until, report); });
 }

@@ -20,7 +20,7 @@ inline constexpr int kTiesPerBranch = 4;
 inline constexpr int kMaxBeamWidth = 1'000'000;
 inline constexpr double kMaxBeamBytes = 4e9;
 
-// The best walk found; it ends with its last first visit. Of walks that visit as many nodes, the cheapest. Each level
+// The best walk found; it ends with its last first visit, or goes on to where it must end. Of walks that visit as many nodes, the cheapest. Each level
 // keeps a third by each of three rankings, since none works everywhere: what was spent and all, a quarter or none of
 // the penalties for what is left over. A scorer's word takes the place of the last one; it scores the first visits of
 // ⌈¾ √width⌉ partial walks of a level: two thirds of those its own best, a third the best by all penalties. First
@@ -30,7 +30,8 @@ inline constexpr double kMaxBeamBytes = 4e9;
 // Optimal where no partial walk had to be dropped and no first visit was left out. Deterministic. Once the deadline
 // passes, the best partial walk. Cost: a level looks at what is near its partial walks and may still be kept.
 //
-// Throws Error where the beam could need more than kMaxBeamBytes, and on ends and prizes, which it does not know.
+// Where there are prizes, rankings count them against what was spent, at the price of all prizes for the whole budget.
+// Throws Error where the beam could need more than kMaxBeamBytes, and on a bad task [check(Task)].
 // REQUIRES: width and branching of at least 1.
 Plan beam_plan(const Task& task, const BeamOptions& options, Deadline deadline = {}, FirstVisitScorer* scorer = nullptr,
                const Report& report = {});

@@ -68,8 +68,10 @@ std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch,
   const double unit = view.open().mean_cost();
   const double worth =
       kWorthOfBudget * unseen + std::clamp(kWorthOfPlenty * (batch.budget_per_work[0] - kPlenty), 0.0, 1.0);
+  const double mean_prize = view.total_prize() / view.valid_count();
   for (std::size_t i = 0; i < visits.size(); ++i) {
     shortfall_[i] += static_cast<float>(worth * visits[i].cost / unit);
+    if (view.has_prizes() && mean_prize > 0) shortfall_[i] -= static_cast<float>(view.prize(visits[i].node) / mean_prize);
   }
   const double most = *std::min_element(shortfall_.begin(), shortfall_.end()) + kIndifference * unseen * unseen;
   const auto choice = std::find_if(shortfall_.begin(), shortfall_.end(), [&](float score) { return score <= most; });
@@ -77,16 +79,17 @@ std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch,
 }
 
 Plan ExplorerPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  require_plain_task(task, "explorer");
+  check(task);
   if (!deadline) return walk_until(task, {}, report);
   return plan_by_deadline(task, deadline, [&](Deadline until) { return walk_until(task, until, report); });
 }
 
-// Where all first visits are too far off to be looked at. REQUIRES: there is one.
+// Where all first visits are too far off to be looked at; kNoNode where there is none.
 FirstVisit ExplorerPlanner::nearest_first_visit(const View& view, const ExplorationState& state) {
   FirstVisit nearest{.node = kNoNode, .cost = 0};
   search_.run(view.open(), state.position, state.spendable, [&](NodeId node, double cost) {
     if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
+    if (cost + state.cost_to_end(node) > state.spendable) return NearestFirst::Next::kPast;
     nearest = {node, cost};
     return NearestFirst::Next::kEnd;
   });
@@ -96,8 +99,12 @@ FirstVisit ExplorerPlanner::nearest_first_visit(const View& view, const Explorat
 Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Report& report) {
   Ticker ticker(deadline, report, kChoicesPerTick);
   NodeSet visited = task.visited_before();
-  ExplorationState state{
-      .visited = visited, .visited_count = visited.count(), .position = task.start, .spendable = task.limit()};
+  const CostToEnd to_end(task);
+  ExplorationState state{.visited = visited,
+                         .visited_count = visited.count(),
+                         .position = task.start,
+                         .spendable = task.limit(),
+                         .to_end = &to_end};
   ExplorerBatch batch;
   std::vector<NodeId> first_visits;
   bool optimal = true;
@@ -105,10 +112,11 @@ Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Repo
     batch.clear();
     const std::span<const FirstVisit> visits = scorer_->encoder().append(task.view, state, kExplorerScope, batch);
     const bool overlooked = scorer_->encoder().overlooked();
-    if (visits.empty() && !overlooked) return plan_of_walk(task, walk_through(task, first_visits, search_), optimal);
+    const FirstVisit choice = !visits.empty() ? visits[scorer_->choose(task.view, batch, visits)]
+                              : overlooked    ? nearest_first_visit(task.view, state)
+                                              : FirstVisit{.node = kNoNode, .cost = 0};
+    if (choice.node == kNoNode) return plan_of_walk(task, walk_through(task, first_visits, search_), optimal);
     optimal = optimal && visits.size() == 1 && !overlooked;
-    const FirstVisit choice =
-        visits.empty() ? nearest_first_visit(task.view, state) : visits[scorer_->choose(task.view, batch, visits)];
     first_visits.push_back(choice.node);
     visited.insert(choice.node);
     ++state.visited_count;

@@ -17,6 +17,7 @@ using std::chrono::steady_clock;
 
 constexpr int kChains = 2;           // without a deadline, whatever the number of threads
 constexpr double kStartShare = 0.05;  // of the time left, for each walk to start with but the first two
+constexpr double kExplorerVisitS = 0.4e-3;  // a first visit of the explorer: it is not begun where it would not end
 constexpr double kBoundShare = 0.05;
 constexpr int kStepsPerLook = 16;  // at the clock; a step takes some microseconds
 constexpr int kMostThreads = 64;
@@ -53,19 +54,10 @@ Stops stops_of(const Task& task, const Targets& targets, std::span<const NodeId>
 
 // The walk that makes for these targets, each by a cheapest way, and for the end.
 std::vector<NodeId> walk_of(const Task& task, const Targets& targets, std::span<const int> order) {
-  const Graph& open = task.view.open();
   NearestFirst search;
   std::vector<NodeId> walk = {task.start};
-  const auto go_to = [&](NodeId node) {
-    const NodeId here = walk.back();
-    if (node == here) return;
-    search.run(open, here, kNoLimit, [&](NodeId met, double) {
-      return met == node ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
-    });
-    search.append_path_to(node, walk);
-  };
-  for (const int target : order) go_to(targets.node(target));
-  if (!task.ends_anywhere()) go_to(task.end);
+  for (const int target : order) append_way_to(task.view, targets.node(target), walk, search);
+  append_way_to_end(task, walk, search);
   return walk;
 }
 
@@ -78,21 +70,22 @@ std::int64_t default_iterations(int targets) {
 
 Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
   check(task);
-  Plan best = plan_of_walk(task, {task.start});
-  const auto consider = [&](Planner& planner, Deadline until) {
-    Plan plan = planner.plan(task, until, report);
-    if (!passed(until)) best = better_of(std::move(best), std::move(plan));
-  };
   NearestPlanner nearest;
-  best = better_of(nearest.plan(task, deadline, report), std::move(best));
+  Plan best = nearest.plan(task, deadline, report);
+  const auto consider = [&](Planner& planner, Deadline until) {
+    best = better_of(std::move(best), planner.plan(task, until, report));
+  };
   const Targets targets(task, deadline);
   const double bound = std::min(max_prize(task, share_of(deadline, kBoundShare)), targets.total_prize());
   const auto met_bound = [&](double prize) { return prize >= bound * (1 - kPrizeRounding); };
   DepthFirstPlanner depth_first;
   BeamPlanner beam{BeamOptions()};
+  const std::chrono::duration<double> explorer_time(kExplorerVisitS * targets.end());
   for (Planner* const planner : {static_cast<Planner*>(&depth_first), static_cast<Planner*>(&beam), explorer_.get()}) {
     if (met_bound(best.prize) || passed(deadline)) break;
-    consider(*planner, share_of(deadline, kStartShare));
+    const Deadline until = share_of(deadline, kStartShare);
+    if (planner == explorer_.get() && until && steady_clock::now() + explorer_time > *until) continue;
+    consider(*planner, until);
   }
 
   if (targets.complete() && targets.end() > 1 && !met_bound(best.prize) && !passed(deadline)) {
@@ -107,6 +100,7 @@ Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report&
     const auto begin = steady_clock::now();
     if (deadline) *deadline -= 2 * (begin - before);
     const double time = deadline ? std::chrono::duration<double>(*deadline - begin).count() : 0;
+    const int before_walk = task.visited_before().count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
     const auto caller = std::this_thread::get_id();
     std::vector<Plan> found(chains);
     parallel_for(chains, [&](int chain) {
@@ -117,7 +111,9 @@ Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report&
         if (step % kStepsPerLook == 0) {
           if (deadline) elapsed = std::chrono::duration<double>(steady_clock::now() - begin).count() / time;
           if (elapsed >= 1 || passed(deadline)) break;
-          if (report && std::this_thread::get_id() == caller) report({.visited = best.visited});
+          if (report && std::this_thread::get_id() == caller) {
+            report({.visited = before_walk + annealing.best_visits(), .bound = bound});
+          }
         }
         const double through = endless ? 0 : static_cast<double>(step) / static_cast<double>(steps);
         annealing.step(std::max(elapsed, through));

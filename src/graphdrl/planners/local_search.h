@@ -29,6 +29,7 @@ class LocalSearchPlanner final : public Planner {
       : options_(options), explorer_(std::move(explorer)) {}
 
   Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+  bool bounds() const override { return true; }
 
  private:
   LocalSearchOptions options_;

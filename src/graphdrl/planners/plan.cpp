@@ -1,10 +1,22 @@
 #include "graphdrl/planners/plan.h"
 
-#include <fmt/format.h>
-
-#include "graphdrl/base/error.h"
+#include <atomic>
 
 namespace graphdrl {
+namespace {
+
+std::atomic<bool> stopped = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+
+}  // namespace
+
+void stop_planning() {
+  stopped = true;
+}
+
+bool planning_stopped() {
+  return stopped.load(std::memory_order_relaxed);
+}
 
 Deadline deadline_after(TimeLimit limit) {
   if (!limit) return std::nullopt;
@@ -50,14 +62,20 @@ std::vector<NodeId> walk_through(const Task& task, std::span<const NodeId> first
     search.append_path_to(target, walk);
     visited.insert(target);
   }
+  append_way_to_end(task, walk, search);
   return walk;
 }
 
-void require_plain_task(const Task& task, std::string_view planner) {
-  if (task.ends_anywhere() && !task.view.has_prizes()) return;
-  throw Error({.what = fmt::format("{} cannot plan for {} yet", planner, task.ends_anywhere() ? "prizes" : "an end"),
-               .expected = "exact, random or random-walk",
-               .where = task.view.name()});
+void append_way_to(const View& view, NodeId node, std::vector<NodeId>& walk, NearestFirst& search) {
+  if (walk.back() == node) return;
+  search.run(view.open(), walk.back(), kNoLimit, [&](NodeId met, double) {
+    return met == node ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+  });
+  search.append_path_to(node, walk);
+}
+
+void append_way_to_end(const Task& task, std::vector<NodeId>& walk, NearestFirst& search) {
+  if (!task.ends_anywhere()) append_way_to(task.view, task.end, walk, search);
 }
 
 }  // namespace graphdrl

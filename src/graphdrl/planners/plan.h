@@ -18,8 +18,13 @@ using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 using TimeLimit = std::optional<std::chrono::duration<double>>;
 
 Deadline deadline_after(TimeLimit limit);
+
+// Asks every planner to end now, as if its deadline had passed; a signal handler may. For good.
+void stop_planning();
+bool planning_stopped();
+
 inline bool passed(Deadline deadline) {
-  return deadline && std::chrono::steady_clock::now() >= *deadline;
+  return planning_stopped() || (deadline && std::chrono::steady_clock::now() >= *deadline);
 }
 
 inline constexpr double kPrizeRounding = 1e-12;  // relative, of sums of prizes in whatever order
@@ -45,7 +50,8 @@ Plan plan_of_walk(const Task& task, std::vector<NodeId> walk, bool optimal = fal
 
 // How far a planner is. Told now and then while it works, on the thread that called it.
 struct PlanProgress {
-  int visited;  // nodes, by the walk under way
+  int visited;                                             // nodes, by the walk under way, or by the best one
+  double bound = std::numeric_limits<double>::infinity();  // as of plans
 };
 using Report = std::function<void(const PlanProgress&)>;
 
@@ -57,14 +63,20 @@ class Planner {
   // The best walk it finds. Once the deadline passes, the best walk so far, which ends where the task says; the walk of
   // the start alone where there is nothing else. Throws Error on a task that it cannot answer.
   virtual Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) = 0;
+
+  // Whether its plans have a bound beside them.
+  virtual bool bounds() const { return false; }
 };
 
 // The walk that makes these first visits one after the other, each by the cheapest way through visited ground.
-// REQUIRES: there are such ways.
+// Goes on to where the task says it must end. REQUIRES: there are such ways.
 std::vector<NodeId> walk_through(const Task& task, std::span<const NodeId> first_visits, NearestFirst& search);
 
-// Throws Error: "NAME cannot plan for an end yet". For planners that know neither ends nor prizes.
-void require_plain_task(const Task& task, std::string_view planner);
+// Appends the cheapest way from a walk's last node to another. REQUIRES: there is one.
+void append_way_to(const View& view, NodeId node, std::vector<NodeId>& walk, NearestFirst& search);
+
+// Likewise to where the task says that it must end, if anywhere.
+void append_way_to_end(const Task& task, std::vector<NodeId>& walk, NearestFirst& search);
 
 // Looks at the clock once in `every` units of work, and reports to whoever listens.
 class Ticker {

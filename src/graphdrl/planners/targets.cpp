@@ -16,8 +16,7 @@ Targets::Targets(const Task& task, Deadline deadline) {
   const View& view = task.view;
   const double limit = task.limit();
   numbers_.assign(view.node_count(), -1);
-  const std::vector<double> back = task.ends_anywhere() ? std::vector<double>() : costs_to(view.into(), task.end);
-  const auto cost_to_end = [&](NodeId node) { return back.empty() ? 0.0 : back[node]; };
+  const CostToEnd cost_to_end(task);
   const auto add = [&](NodeId node, double prize) {
     numbers_[node] = static_cast<int>(nodes_.size());
     nodes_.push_back(node);
@@ -38,7 +37,7 @@ Targets::Targets(const Task& task, Deadline deadline) {
   total_prize_ += prizes_.back();
 
   const bool with_table = end() <= kTableTargets;
-  if (with_table) table_.assign(nodes_.size() * nodes_.size(), kNoLimit);
+  if (with_table) table_.assign(nodes_.size() * prizes_.size(), kNoLimit);
   find_near(view.open(), limit, near_, near_begin_, with_table ? nullptr : &near_cost_, deadline);
   if (view.open().directed()) find_near(view.into(), limit, into_, into_begin_, nullptr, deadline);
 }
@@ -49,8 +48,11 @@ void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near
   const bool fills_table = !table_.empty() && &near == &near_;
   begin.assign(1, 0);
   for (int from = 0; from < end(); ++from) {
-    double* const row = fills_table ? table_.data() + static_cast<std::size_t>(from) * nodes_.size() : nullptr;
-    if (row != nullptr) row[from] = 0;
+    double* const row = fills_table ? table_.data() + static_cast<std::size_t>(from) * prizes_.size() : nullptr;
+    if (row != nullptr) {
+      row[from] = 0;
+      row[end()] = to_end_[from];
+    }
     int left = kNearest;
     int met = 0;
     search.run(graph, nodes_[from], limit, [&](NodeId node, double cost) {

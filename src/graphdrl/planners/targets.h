@@ -37,10 +37,12 @@ class Targets {
 
   // From a target other than the end to another; kNoLimit where it is not known, or where there is no way.
   double cost(int from, int to) const {
-    if (to == end()) return to_end_[from];
-    if (!table_.empty()) return table_[static_cast<std::size_t>(from) * nodes_.size() + static_cast<std::size_t>(to)];
-    return near_cost(from, to);
+    if (!table_.empty()) return row(from)[to];
+    return to == end() ? to_end_[from] : near_cost(from, to);
   }
+  // From a target other than the end to each, [T + 1]. REQUIRES: there is a table.
+  const double* row(int from) const { return table_.data() + static_cast<std::size_t>(from) * prizes_.size(); }
+  bool has_table() const { return !table_.empty(); }
 
  private:
   static std::span<const int> list(const std::vector<int>& lists, const std::vector<std::int64_t>& begin, int target) {
@@ -59,7 +61,7 @@ class Targets {
   std::vector<std::int64_t> near_begin_;  // [T + 1]
   std::vector<int> into_;         // likewise, of directed graphs
   std::vector<std::int64_t> into_begin_;
-  std::vector<double> table_;     // [T, T], or empty
+  std::vector<double> table_;     // [T, T + 1], or empty
   double total_prize_ = 0;
   bool complete_ = true;
 };

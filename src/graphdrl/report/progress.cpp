@@ -34,22 +34,34 @@ ProgressDisplay::ProgressDisplay(std::FILE* out, std::string unit, std::int64_t 
     : out_(out), terminal_(isatty(fileno(out)) != 0), unit_(std::move(unit)), first_(first), last_shown_(start_) {}
 
 void ProgressDisplay::show(std::int64_t done, std::int64_t all, const std::string& status, bool always) {
-  const Clock::time_point now = Clock::now();
-  if (!always && now - last_shown_ < (terminal_ ? kTerminalInterval : kPlainInterval)) return;
-  last_shown_ = now;
-
-  const double elapsed_s = Seconds(now - start_).count();
+  if (!is_due(always)) return;
+  const double elapsed_s = Seconds(last_shown_ - start_).count();
   const double left_s =
       done > first_ ? elapsed_s / static_cast<double>(done - first_) * static_cast<double>(all - done) : NAN;
-  std::string line = fmt::format("{}/{}  {}  {} left", done, all, status,
-                                 std::isnan(left_s) ? std::string("-") : format_duration(left_s));
+  write(fmt::format("{}/{}  {}  {} left", done, all, status,
+                    std::isnan(left_s) ? std::string("-") : format_duration(left_s)),
+        static_cast<double>(done) / static_cast<double>(all));
+}
+
+void ProgressDisplay::show_line(const std::string& line, double share) {
+  if (is_due(/*always=*/false)) write(line, share);
+}
+
+bool ProgressDisplay::is_due(bool always) {
+  const Clock::time_point now = Clock::now();
+  if (!always && now - last_shown_ < (terminal_ ? kTerminalInterval : kPlainInterval)) return false;
+  last_shown_ = now;
+  return true;
+}
+
+void ProgressDisplay::write(std::string line, double share) {
   if (!terminal_) {
     std::fputs((unit_ + " " + line + '\n').c_str(), out_);
   } else {
     // The bar takes what room the numbers leave.
     const std::size_t columns = terminal_columns(out_);
     const std::size_t room = columns > line.size() + 4 ? std::min(columns - line.size() - 4, kMaxBarWidth) : 0;
-    const auto filled = room * static_cast<std::size_t>(done) / static_cast<std::size_t>(all);
+    const auto filled = static_cast<std::size_t>(static_cast<double>(room) * std::clamp(share, 0.0, 1.0));
     if (room > 0) line = fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(room - filled, '.'), line);
     if (line.size() > columns) line.resize(columns);
     std::fputs(("\r" + line + "\033[K").c_str(), out_);

@@ -18,10 +18,16 @@ class ProgressDisplay {
   // Shows how many are done and the status, unless the last one was shown a moment ago; `always` shows it in any case.
   void show(std::int64_t done, std::int64_t all, const std::string& status, bool always = false);
 
+  // The same with a line of one's own, beside a bar so full.
+  void show_line(const std::string& line, double share);
+
   // Ends a bar's line.
   void finish();
 
  private:
+  bool is_due(bool always);
+  void write(std::string line, double share);
+
   using Clock = std::chrono::steady_clock;
 
   std::FILE* out_;

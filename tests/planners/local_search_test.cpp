@@ -1,0 +1,227 @@
+#include "graphdrl/planners/local_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "../support.h"
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/env/episode.h"
+#include "graphdrl/env/walk.h"
+#include "graphdrl/env/world_families.h"
+#include "graphdrl/planners/registry.h"
+#include "graphdrl/planners/route.h"
+
+namespace graphdrl {
+namespace {
+
+// A world of a family, with costs and one way edges where asked for, and its task at 1.0x.
+World family_world(const char* family, int size, bool weighted = false, bool directed = false) {
+  return split_world({.family = family, .size = size, .weighted = weighted, .directed = directed}, Split::kTrain, 3);
+}
+
+Task task_of(const World& world) {
+  return {.view = world,
+          .start = world.valid_nodes().front(),
+          .budget = world.valid_count() * world.open().mean_cost()};
+}
+
+TEST(Targets, CostWhatTheCheapestWaysDo) {
+  for (const bool directed : {false, true}) {
+    const World world = family_world("erdos-renyi", 40, /*weighted=*/true, directed);
+    Task task = task_of(world);
+    task.end = world.valid_nodes().back();
+    const Targets targets(task, {});
+    ASSERT_TRUE(targets.complete());
+    EXPECT_EQ(targets.symmetric(), !directed);
+    const std::vector<double> to_end = costs_to(world.into(), task.end);
+    for (int to = 0; to < targets.end(); ++to) {
+      EXPECT_EQ(targets.target_of(targets.node(to)), to);
+      EXPECT_EQ(targets.cost(to, targets.end()), to_end[targets.node(to)]);
+      const std::vector<double> costs = costs_to(world.into(), targets.node(to));
+      for (int from = 0; from < targets.end(); ++from) {
+        const double cost = costs[targets.node(from)];
+        if (cost <= task.budget) {
+          ASSERT_NEAR(targets.cost(from, to), cost, 1e-9);
+        }
+      }
+      const auto near = targets.near(to);
+      EXPECT_TRUE(std::is_sorted(near.begin(), near.end(),
+                                 [&](int a, int b) { return targets.cost(to, a) < targets.cost(to, b) - 1e-12; }));
+      const auto into = targets.into(to);
+      EXPECT_TRUE(std::is_sorted(into.begin(), into.end(),
+                                 [&](int a, int b) { return targets.cost(a, to) < targets.cost(b, to) - 1e-12; }));
+    }
+  }
+}
+
+TEST(Targets, AreWhatIsWorthSomethingAndCanBeHad) {
+  // 0 - 1 - 2 - 3 - 4, and 5 to which no edge leads.
+  const std::vector<Edge> edges = {{0, 1}, {1, 2}, {2, 3}, {3, 4}};
+  const World world("path", Graph::from_edges(6, edges), std::vector<bool>(6), {}, {1, 0, 2, 3, 4, 5});
+  const Targets open({.view = world, .start = 0, .budget = 3}, {});
+  EXPECT_EQ(open.end(), 3);  // 0, 2 and 3
+  EXPECT_EQ(open.total_prize(), 6);
+  const Targets there_and_back({.view = world, .start = 0, .budget = 4, .end = 0}, {});
+  EXPECT_EQ(there_and_back.end(), 2);  // 0 and 2
+  const Targets to_four({.view = world, .start = 0, .budget = 4, .end = 4}, {});
+  EXPECT_EQ(to_four.end(), 3);
+  EXPECT_EQ(to_four.prize(to_four.end()), 4);
+}
+
+// Beyond kTableTargets a target knows its nearest ones only.
+TEST(Targets, KnowTheNearestInLargeWorlds) {
+  const World world = family_world("obstacles", 61);
+  const Targets targets(task_of(world), {});
+  ASSERT_GT(targets.end(), Targets::kTableTargets);
+  ASSERT_FALSE(targets.has_table());
+  for (int target = 0; target < targets.end(); target += 97) {
+    const std::vector<double> costs = costs_to(world.open(), targets.node(target));
+    ASSERT_EQ(std::ssize(targets.near(target)), Targets::kNearest);
+    for (const int near : targets.near(target)) EXPECT_EQ(targets.cost(target, near), costs[targets.node(near)]);
+  }
+  EXPECT_EQ(targets.cost(0, targets.end() - 1), kNoLimit);
+}
+
+// A route beside a plain list, changed at random.
+TEST(Route, IsAListWhoseChangesCanBeUndone) {
+  const World world = family_world("geometric", 50, /*weighted=*/true);
+  const Targets targets(task_of(world), {});
+  const int end = targets.end();
+  Route route(targets);
+  std::vector<int> list;
+  for (int target = 1; target < end; target += 2) list.push_back(target);
+  route.assign(list, std::vector<double>(list.size() + 1, kNoLimit));
+  const auto expect_equal = [&](const std::vector<int>& order) {
+    ASSERT_EQ(route.order(), order);
+    double cost = 0;
+    double prize = targets.prize(0);
+    int last = 0;
+    for (const int target : order) {
+      cost += targets.cost(last, target);
+      prize += targets.prize(target);
+      ASSERT_EQ(route.previous(target), last);
+      ASSERT_TRUE(route.before(last, target));
+      last = target;
+    }
+    ASSERT_NEAR(route.cost(), cost, 1e-9);
+    ASSERT_NEAR(route.prize(), prize, 1e-9);
+  };
+  Rng rng(5);
+  std::vector<int> kept = list;
+  const auto below = [&](std::size_t bound) { return static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(bound))); };
+  for (int i = 0; i < 5'000; ++i) {
+    const int target = 1 + static_cast<int>(below(end - 1));
+    const auto found = std::find(list.begin(), list.end(), target);
+    if (found == list.end()) {
+      const auto place = below(list.size() + 1);
+      const int after = place == 0 ? 0 : list[place - 1];
+      route.insert(target, after, targets.cost(after, target), targets.cost(target, route.next(after)));
+      list.insert(list.begin() + place, target);
+    } else if (rng.below(2) == 0 || list.size() < 3) {
+      route.remove(target);
+      list.erase(found);
+    } else {
+      auto first = below(list.size());
+      auto last = below(list.size());
+      if (first > last) std::swap(first, last);
+      route.reverse(list[first], list[last], targets.cost(route.previous(list[first]), list[last]),
+                    targets.cost(list[first], route.next(list[last])));
+      std::reverse(list.begin() + first, list.begin() + last + 1);
+    }
+    expect_equal(list);
+    const std::uint32_t what = rng.below(8);
+    if (what == 0) {
+      route.keep();
+      kept = list;
+    } else if (what == 1) {
+      route.undo();
+      list = kept;
+      expect_equal(list);
+    }
+  }
+}
+
+TEST(LocalSearch, IsNeverWorseThanWhatItBeginsWith) {
+  for (const bool directed : {false, true}) {
+    for (const bool weighted : {false, true}) {
+      const World world = family_world("erdos-renyi", 60, weighted, directed);
+      Task task = task_of(world);
+      for (const NodeId end : {kNoNode, task.start}) {
+        task.end = end;
+        const Plan found = make_planner("search:2000")->plan(task);
+        for (const char* const name : {"nearest", "dfs", "beam", "explorer"}) {
+          EXPECT_FALSE(better(make_planner(name)->plan(task), found)) << name;
+        }
+        EXPECT_GE(found.bound, found.prize);
+        Episode episode(world, {.budget = task.budget, .action_space = ActionSpace::kNeighbours});
+        follow_walk(episode, found.walk);
+        EXPECT_EQ(episode.visited_count(), found.visited);
+        EXPECT_TRUE(end == kNoNode || found.walk.back() == end);
+      }
+    }
+  }
+}
+
+TEST(LocalSearch, ImprovesWhatBeamsFind) {
+  int better_plans = 0;
+  for (const char* const family : {"obstacles", "loop-maze", "rooms"}) {
+    const World world = family_world(family, 15);
+    const Task task = task_of(world);
+    better_plans += make_planner("search:20000")->plan(task).visited > make_planner("beam:50")->plan(task).visited;
+  }
+  EXPECT_GE(better_plans, 2);
+}
+
+// Without a table, links that lead far are known only as long as they stand.
+TEST(LocalSearch, WorksWithoutATable) {
+  const World grid = family_world("obstacles", 61);
+  const World streets = family_world("geometric", 2600, /*weighted=*/true, /*directed=*/true);
+  for (const World& world : {grid, streets}) {
+    const Task task = task_of(world);
+    const Plan found = make_planner("search:20000")->plan(task);
+    Episode episode(world, {.budget = task.budget, .action_space = ActionSpace::kNeighbours});
+    follow_walk(episode, found.walk);
+    EXPECT_EQ(episode.visited_count(), found.visited);
+    EXPECT_TRUE(better(found, make_planner("nearest")->plan(task)));
+  }
+}
+
+TEST(LocalSearch, WalksTheSameForAnyNumberOfThreads) {
+  const World world = family_world("obstacles", 11);
+  const Task task = task_of(world);
+  std::vector<std::vector<NodeId>> walks;
+  for (const int count : {1, 2, 3}) {
+    set_threads(count);
+    walks.push_back(make_planner("search:3000", 7)->plan(task).walk);
+  }
+  set_threads(1);
+  EXPECT_EQ(walks[0], walks[1]);
+  EXPECT_EQ(walks[0], walks[2]);
+  EXPECT_NE(walks[0], make_planner("search:3000", 8)->plan(task).walk);
+}
+
+TEST(LocalSearch, EndsWhereAllIsVisited) {
+  const World room("room", GridMap{.rows = 30, .cols = 30, .blocked = std::vector<bool>(900)});
+  const Plan plan = make_planner("search:1000000000000")->plan(task_of(room));
+  EXPECT_TRUE(plan.optimal);
+  EXPECT_EQ(plan.visited, 900);
+}
+
+TEST(LocalSearch, HasAWalkWhateverTheTime) {
+  const World world = family_world("obstacles", 61);
+  Task task = task_of(world);
+  for (const NodeId end : {kNoNode, task.start}) {
+    task.end = end;
+    for (const double seconds : {0.0, 0.001, 0.01, 0.1}) {
+      const Plan plan = make_planner("search")->plan(task, deadline_after(std::chrono::duration<double>(seconds)));
+      Episode episode(world, {.budget = task.budget, .action_space = ActionSpace::kNeighbours});
+      follow_walk(episode, plan.walk);
+      EXPECT_TRUE(end == kNoNode || plan.walk.back() == end);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace graphdrl
