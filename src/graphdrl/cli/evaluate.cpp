@@ -12,7 +12,7 @@ namespace {
 struct EvaluateOptions {
   std::vector<std::string> policies = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
   std::vector<std::string> maps = {"paper"};
-  std::string budget = "25";
+  std::string budget;
   ComparisonOptions comparison;
   bool json = false;
 };
@@ -49,7 +49,7 @@ Json to_json(const Comparison& comparison) {
 void evaluate(const EvaluateOptions& options) {
   ComparisonOptions comparison = options.comparison;
   comparison.policies = options.policies;
-  comparison.budget = Budget::parse(options.budget);
+  if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
   const Comparison result = compare(load_worlds(options.maps), comparison);
   if (options.json) {
     print_json(to_json(result));
@@ -70,15 +70,14 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--maps", options->maps, "paper, paper:a to paper:j, a file, or a folder; may be given again")
       ->type_name("M")
       ->capture_default_str();
-  command->add_option("--budget", options->budget, "What an episode may cost, or a multiple of the valid nodes, as 1.1x")
-      ->type_name("B")
-      ->capture_default_str();
-  command->add_option("--end", options->comparison.end, "Where walks must end: anywhere, start, or a node")
+  command->add_option("--budget", options->budget, "What an episode may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's, else 25")
       ->check(not_empty())
-      ->type_name("E")
-      ->capture_default_str();
+      ->type_name("B");
+  command->add_option("--end", options->comparison.end, "Where walks must end: anywhere, start, or a node. The default is the file's, else anywhere")
+      ->check(not_empty())
+      ->type_name("E");
   CLI::Option* const episodes =
-      command->add_option("--episodes", options->comparison.episodes, "Episodes per map, from random starts")
+      command->add_option("--episodes", options->comparison.episodes, "Episodes per map, from the file's start, else from random ones")
           ->type_name("K")
           ->capture_default_str();
   command->add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")

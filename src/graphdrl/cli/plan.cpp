@@ -33,7 +33,7 @@ struct PlanOptions {
   std::string map;
   std::string budget;
   std::string start;
-  std::string end = "anywhere";
+  std::string end;
   std::string policy = "search";
   std::optional<std::int64_t> iterations;
   std::optional<double> time_limit_s;
@@ -229,6 +229,20 @@ std::string policy_of(const PlanOptions& options) {
   throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(options.policy, 200)});
 }
 
+// What the options say; the file, where they do not.
+Task task_of(const World& world, const PlanOptions& options) {
+  const GivenTask& given = world.given();
+  NodeId start = given.start == kNoNode ? world.valid_nodes().front() : given.start;
+  if (!options.start.empty()) start = parse_node(world, options.start, "start");
+  if (options.budget.empty() && !given.budget) {
+    throw Error({.what = "no budget is given", .expected = "--budget B", .where = world.name()});
+  }
+  return {.view = world,
+          .start = start,
+          .budget = options.budget.empty() ? *given.budget : Budget::parse(options.budget).cost_in(world),
+          .end = options.end.empty() ? given.end : parse_end(world, options.end).of(start)};
+}
+
 void plan(PlanOptions options) {
   options.policy = policy_of(options);
   if (options.time_limit_s && !(*options.time_limit_s >= 0 && *options.time_limit_s <= kMostSeconds)) {
@@ -238,11 +252,7 @@ void plan(PlanOptions options) {
                  .where = "--time-limit"});
   }
   const World world = load_one_world(options.map);
-  const NodeId start = options.start.empty() ? world.valid_nodes().front() : parse_node(world, options.start, "start");
-  const Task task{.view = world,
-                  .start = start,
-                  .budget = Budget::parse(options.budget).cost_in(world),
-                  .end = parse_end(world, options.end).of(start)};
+  const Task task = task_of(world, options);
   catch_signals();
   const Answer answer = make_plan(world, task, options);
   if (options.json) {
@@ -259,23 +269,23 @@ void add_plan_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
-  command->add_option("map", options->map, "paper:a to paper:j, or a file: an ASCII map, or a graph as node-link JSON")
+  command->add_option("map", options->map, "paper:a to paper:j, or a file: an ASCII map, a graph as node-link JSON, or a problem of OPLib")
       ->required()
       ->type_name("MAP");
-  command->add_option("--budget", options->budget, "What the walk may cost, or a multiple of the valid nodes, as 1.1x")
-      ->required()
+  command->add_option("--budget", options->budget, "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's")
+      ->check(not_empty())
       ->type_name("B");
   command
       ->add_option(
           "--start", options->start,
           "A node id, or row,col on a grid; in a graph with labels a label, or #N for node id N. The default is the "
-          "first valid node")
+          "file's, else the first valid node")
       ->check(not_empty())
       ->type_name("S");
-  command->add_option("--end", options->end, "Where the walk must end: anywhere, start, or a node as for --start")
+  command->add_option("--end", options->end, "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, "
+                  "else anywhere")
       ->check(not_empty())
-      ->type_name("E")
-      ->capture_default_str();
+      ->type_name("E");
   command->add_option("--policy", options->policy, policy_names())->type_name("P")->capture_default_str();
   command
       ->add_option("--iterations", options->iterations,

@@ -22,7 +22,7 @@ World make_world(NamedMap&& named) {
   if (auto* const grid = std::get_if<GridMap>(&named.map)) return World(std::move(named.name), std::move(*grid));
   auto& map = std::get<GraphMap>(named.map);
   return World(std::move(named.name), std::move(map.graph), std::move(map.blocked), std::move(map.labels),
-               std::move(map.prizes));
+               std::move(map.prizes), map.task);
 }
 
 // kNoNode where the text names no node.

@@ -24,12 +24,13 @@ World::World(std::string name, GridMap map) {
 }
 
 World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels,
-             std::vector<double> prizes) {
+             std::vector<double> prizes, GivenTask given) {
   const auto data = std::make_shared<Data>();
   data->name = std::move(name);
   data->blocked = std::move(blocked);
   data->labels = std::move(labels);
   data->prizes = std::move(prizes);
+  data->given = given;
   const bool any_blocked = std::find(data->blocked.begin(), data->blocked.end(), true) != data->blocked.end();
   if (any_blocked) {
     data->open = graph.without(data->blocked);

@@ -11,6 +11,7 @@
 
 #include "graphdrl/graph/graph.h"
 #include "graphdrl/graph/grid_map.h"
+#include "graphdrl/io/node_link.h"
 
 namespace graphdrl {
 
@@ -25,7 +26,7 @@ class World {
   // node is blocked. REQUIRES: blocked has a value per node, and so have labels and prizes where there are any; prizes
   // are finite and not negative.
   World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels = {},
-        std::vector<double> prizes = {});
+        std::vector<double> prizes = {}, GivenTask given = {});
 
   const std::string& name() const { return data_->name; }
   NodeId node_count() const { return data_->open.node_count(); }
@@ -42,6 +43,9 @@ class World {
   double prize(NodeId node) const { return data_->prizes.empty() ? 1.0 : data_->prizes[node]; }
   const std::vector<double>& prizes() const { return data_->prizes; }
   double total_prize() const { return data_->total_prize; }  // of the valid nodes
+
+  // What the file says of the walk asked for.
+  const GivenTask& given() const { return data_->given; }
 
   // The graph with its blocked nodes. That of a grid is made when it is first asked for.
   const Graph& graph() const;
@@ -74,6 +78,7 @@ class World {
     std::vector<std::string> labels;
     std::vector<double> prizes;  // [N]; empty where each is 1
     double total_prize = 0;
+    GivenTask given;
     bool exact_sums = true;
     std::vector<NodeId> valid_nodes;
     std::vector<std::array<NodeId, 4>> direction_targets;  // [N], of grids

@@ -27,8 +27,6 @@ constexpr std::array<PaperResult, 10> kPaperTable2 = {{{89.8, 8.3, 100.0},
                                                        {63.5, 11.1, 81.0},
                                                        {56.0, 23.9, 85.0},
                                                        {82.1, 9.2, 95.5}}};
-constexpr double kPaperBudget = 25;
-
 // Purposes of derive_seed: what a map's figures are does not depend on the other policies of the comparison.
 constexpr std::uint64_t kStartSeeds = 1;
 constexpr std::uint64_t kPolicySeeds = 2;
@@ -68,6 +66,7 @@ std::optional<double> mean_optimum(const Arena& arena) {
 std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& options, std::size_t map) {
   const auto nodes = world.valid_nodes();
   if (options.all_starts) return {nodes.begin(), nodes.end()};
+  if (world.given().start != kNoNode) return std::vector<NodeId>(options.episodes, world.given().start);
   Rng rng(derive_seed(options.seed, kStartSeeds, map));
   std::vector<NodeId> starts;
   starts.reserve(static_cast<std::size_t>(options.episodes));
@@ -80,9 +79,12 @@ std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& opt
 std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
+    const GivenTask& given = world.given();
+    const End own = given.end == kNoNode ? End::anywhere() : End::at(given.end);
+    const End end = options.end.empty() ? own : parse_end(world, options.end);
     arenas.push_back({.world = world,
-                      .budget = options.budget.cost_in(world),
-                      .end = parse_end(world, options.end),
+                      .budget = options.budget ? options.budget->cost_in(world) : given.budget.value_or(kPaperBudget),
+                      .end = end,
                       .starts = draw_starts(world, options, arenas.size()),
                       .optimum = {}});
   }

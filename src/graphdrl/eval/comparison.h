@@ -21,11 +21,13 @@ struct PaperResult {
 // For a map `paper:a` … `paper:j` under a budget of 25; empty elsewhere.
 std::optional<PaperResult> paper_result(const std::string& map, double budget);
 
+inline constexpr double kPaperBudget = 25;
+
 struct ComparisonOptions {
   std::vector<std::string> policies;  // as make_policy takes them
-  Budget budget = Budget::parse("25");
-  std::string end = "anywhere";  // as parse_end() takes it
-  int episodes = 30;        // per map, from random starts, the same for every policy
+  std::optional<Budget> budget;  // the default is the map's own, else kPaperBudget
+  std::string end;               // as parse_end() takes it; the default is the map's own, else anywhere
+  int episodes = 30;        // per map, from its own start, else random ones, the same for every policy
   bool all_starts = false;  // instead: every valid node once
   std::uint64_t seed = 1;
 };

@@ -36,12 +36,21 @@ std::string format_rows(std::span<const ComparisonRow> rows, std::size_t name_wi
   return text + '\n';
 }
 
+// Of all rows; "the maps' own" where they differ.
+std::string budgets_of(const Comparison& comparison) {
+  const auto& rows = comparison.rows;
+  const bool same = !rows.empty() && std::all_of(rows.begin(), rows.end(), [&](const ComparisonRow& row) {
+    return row.budget == rows.front().budget;
+  });
+  return same ? fmt::format("{:g}", rows.front().budget) : "the maps' own";
+}
+
 }  // namespace
 
 std::string format_comparison(const Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
   std::string text = fmt::format(
-      "Coverage of the valid nodes in %, budget {}, {}\n\n", options.budget.text(),
+      "Coverage of the valid nodes in %, budget {}, {}\n\n", options.budget ? options.budget->text() : budgets_of(comparison),
       options.all_starts ? "every start once"
                          : fmt::format("{} episodes per map, random starts (seed {})", options.episodes, options.seed));
   std::size_t name_width = 11;

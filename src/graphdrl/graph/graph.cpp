@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "graphdrl/base/error.h"
@@ -124,7 +125,41 @@ Graph Graph::grid(int rows, int cols, const std::vector<bool>& blocked) {
   return graph;
 }
 
+Graph Graph::complete(NodeId node_count, std::shared_ptr<const PairCosts> costs) {
+  Graph graph;
+  graph.offsets_.resize(static_cast<std::size_t>(node_count) + 1);
+  std::iota(graph.offsets_.begin(), graph.offsets_.end(), std::int64_t{1});
+  // All nodes twice, so that those after a node, and then those before it, stand together.
+  for (int copy = 0; copy < 2; ++copy) {
+    for (NodeId node = 0; node < node_count; ++node) graph.neighbours_.push_back(node);
+  }
+  graph.overlap_ = node_count - 2;
+  graph.pair_costs_ = std::move(costs);
+  double sum = 0;
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (NodeId node = 0; node < node_count; ++node) {
+    for (NodeId other = node + 1; other < node_count; ++other) {
+      const double cost = graph.pair_costs_->cost(node, other);
+      sum += cost;
+      least = std::min(least, cost);
+      most = std::max(most, cost);
+      graph.integer_costs_ = graph.integer_costs_ && cost == std::floor(cost);
+    }
+  }
+  if (node_count < 2) return graph;
+  graph.min_cost_ = least;
+  graph.max_cost_ = most;
+  graph.mean_cost_ = sum > 0 ? sum / static_cast<double>(graph.edge_count()) : 1;
+  graph.integer_costs_ = graph.integer_costs_ && 2 * sum < kExactIntegers;
+  return graph;
+}
+
 int Graph::index_of(NodeId node, NodeId next) const {
+  if (is_complete()) {
+    const NodeId place = next > node ? next - node - 1 : next - node - 1 + node_count();
+    return next < 0 || next >= node_count() || next == node ? -1 : place;
+  }
   const auto all = neighbours(node);
   // Lists longer than a grid's are in ascending order.
   const auto place = all.size() > kAllDirections.size() ? std::lower_bound(all.begin(), all.end(), next)
@@ -133,6 +168,11 @@ int Graph::index_of(NodeId node, NodeId next) const {
 }
 
 Graph Graph::without(const std::vector<bool>& dropped) const {
+  if (is_complete()) {
+    std::vector<Edge> left = edges();
+    std::erase_if(left, [&](const Edge& edge) { return dropped[edge.a] || dropped[edge.b]; });
+    return from_edges(node_count(), left);
+  }
   Graph graph;
   graph.kind_ = kind_;
   graph.offsets_.reserve(offsets_.size());
@@ -156,10 +196,11 @@ Graph Graph::induced(std::span<const NodeId> nodes, std::vector<NodeId>& number)
   graph.kind_ = kind_;
   graph.offsets_.reserve(nodes.size() + 1);
   for (const NodeId node : nodes) {
-    for (std::int64_t i = offsets_[node]; i < offsets_[node + 1]; ++i) {
-      if (number[neighbours_[i]] == kNoNode) continue;
-      graph.neighbours_.push_back(number[neighbours_[i]]);
-      if (weighted()) graph.costs_.push_back(costs_[i]);
+    const auto all = neighbours(node);
+    for (int i = 0; i < std::ssize(all); ++i) {
+      if (number[all[i]] == kNoNode) continue;
+      graph.neighbours_.push_back(number[all[i]]);
+      if (weighted()) graph.costs_.push_back(cost(node, i));
     }
     graph.close_node();
   }

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <iterator>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "graphdrl/graph/pair_costs.h"
+
 namespace graphdrl {
 
-using NodeId = std::int32_t;
 inline constexpr NodeId kNoNode = -1;
 
 // Undirected, or from a to b in a directed graph.
@@ -37,6 +39,12 @@ class Graph {
   // The same without the edges of blocked cells. REQUIRES: blocked has a value per cell.
   static Graph grid(int rows, int cols, const std::vector<bool>& blocked);
 
+  // An edge between any two nodes, undirected. Lists of neighbours are in ascending order from the node on, and begin
+  // again after the last one. Memory: O(nodes), and what the costs need. Cost: a look at every pair.
+  static Graph complete(NodeId node_count, std::shared_ptr<const PairCosts> costs);
+  // Searches take its edges straight: no way round costs less, but for rounding.
+  bool is_complete() const { return pair_costs_ != nullptr; }
+
   // The same nodes, without the edges that touch a dropped one. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;
 
@@ -52,18 +60,24 @@ class Graph {
   Graph reversed() const;
 
   NodeId node_count() const { return static_cast<NodeId>(offsets_.size()) - 1; }
-  std::int64_t edge_count() const { return std::ssize(neighbours_) / (directed() ? 1 : 2); }
+  std::int64_t edge_count() const {
+    if (is_complete()) return std::int64_t{node_count()} * (node_count() - 1) / 2;
+    return std::ssize(neighbours_) / (directed() ? 1 : 2);
+  }
   bool directed() const { return kind_ == EdgeKind::kDirected; }
-  bool weighted() const { return !costs_.empty(); }  // some edge costs other than 1
+  bool weighted() const { return !costs_.empty() || is_complete(); }  // some edge costs other than 1
 
   // Where edges lead from a node, and how many there are.
   std::span<const NodeId> neighbours(NodeId node) const {
-    return {neighbours_.data() + offsets_[node], neighbours_.data() + offsets_[node + 1]};
+    return {neighbours_.data() + offsets_[node], neighbours_.data() + offsets_[node + 1] + overlap_};
   }
-  int degree(NodeId node) const { return static_cast<int>(offsets_[node + 1] - offsets_[node]); }
+  int degree(NodeId node) const { return static_cast<int>(offsets_[node + 1] + overlap_ - offsets_[node]); }
 
   // What it costs to go to the neighbour of this place in neighbours().
-  double cost(NodeId node, int index) const { return costs_.empty() ? 1.0 : costs_[offsets_[node] + index]; }
+  double cost(NodeId node, int index) const {
+    if (is_complete()) return pair_costs_->cost(node, neighbours_[offsets_[node] + index]);
+    return costs_.empty() ? 1.0 : costs_[offsets_[node] + index];
+  }
 
   // The place of `next` in neighbours(node), or -1. Cost: O(log degree), or O(4) on a grid.
   int index_of(NodeId node, NodeId next) const;
@@ -88,7 +102,9 @@ class Graph {
 
   EdgeKind kind_ = EdgeKind::kUndirected;
   std::vector<std::int64_t> offsets_ = {0};  // [N + 1]
-  std::vector<NodeId> neighbours_;           // [2E], or [E] of a directed graph
+  std::vector<NodeId> neighbours_;           // [2E], or [E] of a directed graph; [2N] of a complete one
+  std::int64_t overlap_ = 0;                 // how far each list reaches into the next: N - 2 in a complete graph
+  std::shared_ptr<const PairCosts> pair_costs_;     // of a complete graph
   std::vector<double> costs_;                // as neighbours_; empty where every edge costs 1
   double min_cost_ = 1;
   double max_cost_ = 1;

@@ -13,7 +13,8 @@ namespace graphdrl {
 
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-// The ways from one node outwards, nearest first: breadth first where every edge costs 1, else by Dijkstra's algorithm.
+// The ways from one node outwards, nearest first: breadth first where every edge costs 1, else by Dijkstra's algorithm;
+// straight ways alone in a complete graph.
 // Among equally near nodes the one met first comes first. Scratch memory of one thread: it serves one search after the
 // other, of any graphs. A search costs what it touches, not the size of the graph, but for growing to it once.
 class NearestFirst {
@@ -24,7 +25,9 @@ class NearestFirst {
   template <typename Visit>
   void run(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
     begin(graph.node_count());
-    if (graph.weighted()) {
+    if (graph.is_complete()) {
+      run_straight(graph, from, max_cost, visit);
+    } else if (graph.weighted()) {
       run_dijkstra(graph, from, max_cost, visit);
     } else {
       run_breadth_first(graph, from, max_cost, visit);
@@ -64,6 +67,8 @@ class NearestFirst {
   void run_breadth_first(const Graph& graph, NodeId from, double max_cost, const Visit& visit);
   template <typename Visit>
   void run_dijkstra(const Graph& graph, NodeId from, double max_cost, const Visit& visit);
+  template <typename Visit>
+  void run_straight(const Graph& graph, NodeId from, double max_cost, const Visit& visit);
 
   std::vector<Mark> marks_;  // [N]
   std::uint32_t run_ = 0;
@@ -124,6 +129,25 @@ void NearestFirst::run_dijkstra(const Graph& graph, NodeId from, double max_cost
       heap_.push_back({cost, ++order, neighbours[i], here.node});
       std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
     }
+  }
+}
+
+template <typename Visit>
+void NearestFirst::run_straight(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
+  heap_.clear();
+  const auto neighbours = graph.neighbours(from);
+  for (int i = 0; i < std::ssize(neighbours); ++i) {
+    const double cost = graph.cost(from, i);
+    if (cost <= max_cost) heap_.push_back({cost, i, neighbours[i], from});
+  }
+  std::make_heap(heap_.begin(), heap_.end(), std::greater<>());
+  marks_[from] = {run_, from};
+  while (!heap_.empty()) {
+    const Reached here = heap_.front();
+    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
+    heap_.pop_back();
+    marks_[here.node] = {run_, from};
+    if (visit(here.node, here.cost) == Next::kEnd) return;
   }
 }
 

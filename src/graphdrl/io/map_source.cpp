@@ -6,6 +6,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/tsplib.h"
 
 namespace graphdrl {
 namespace {
@@ -23,6 +24,7 @@ NamedMap file_map(const std::filesystem::path& path) {
   if (begin != std::string::npos && text[begin] == '{') {
     return {path.stem().string(), parse_node_link(text, path.string())};
   }
+  if (is_tsplib(text)) return {path.stem().string(), parse_tsplib(text, path.string())};
   return {path.stem().string(), parse_ascii_map(text, path.string())};
 }
 

@@ -17,7 +17,8 @@ struct NamedMap {
 };
 
 // `paper:a` … `paper:j`, `paper` (all ten), a file, or a folder of files (read in order of name; hidden ones are
-// skipped). A file that begins with '{' is a graph in node-link form, any other an ASCII map. Throws Error where
+// skipped). A file that begins with '{' is a graph in node-link form, one that begins
+// with a keyword of TSPLIB a file of OPLib, any other an ASCII map. Throws Error where
 // nothing can be read under that name. A file called `paper` is reachable as `./paper`.
 std::vector<NamedMap> load_maps(const std::string& source);
 

@@ -1,6 +1,7 @@
 // Any graph as JSON in node-link form, as networkx's node_link_data and D3 write it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,12 +11,20 @@
 
 namespace graphdrl {
 
+// What a file says of the walk asked for, where it does.
+struct GivenTask {
+  std::optional<double> budget;
+  NodeId start = kNoNode;
+  NodeId end = kNoNode;
+};
+
 // A graph with its obstacles, as a file holds it.
 struct GraphMap {
   Graph graph;
   std::vector<bool> blocked;        // [N]
   std::vector<std::string> labels;  // [N], what the file calls its nodes; empty where that is 0 … N - 1
   std::vector<double> prizes = {};  // [N], what a first visit is worth; empty where that is 1 everywhere
+  GivenTask task = {};
 };
 
 // {"directed": false, "nodes": [{"id": "a", "blocked": true, "prize": 3}, …], "links": [{"source": "a", "target": "b",

@@ -1,0 +1,17 @@
+// Costs between all pairs of places, computed when they are asked for.
+#pragma once
+
+#include <cstdint>
+
+namespace graphdrl {
+
+using NodeId = std::int32_t;
+
+// Symmetric, and finite and not negative. Immutable: any number of threads may ask.
+class PairCosts {
+ public:
+  virtual ~PairCosts() = default;
+  virtual double cost(NodeId from, NodeId to) const = 0;
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,278 @@
+#include "graphdrl/io/tsplib.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::array<std::string_view, 6> kFirstKeywords = {"NAME",      "TYPE",       "COMMENT",
+                                                            "DIMENSION", "COST_LIMIT", "EDGE_WEIGHT_TYPE"};
+constexpr NodeId kMostNodes = 100'000;
+constexpr NodeId kMostExplicit = 20'000;  // a matrix of 3 GB
+constexpr std::string_view kSpace = " \t\r\n";
+
+struct Point {
+  double x;
+  double y;
+};
+
+enum class Distance { kEuclidean, kCeiling, kGeographic, kPseudoEuclidean };
+
+// TSPLIB's formulas (Reinelt 1995, section 2); of geographic ones with its values of pi and of the earth's radius, in
+// km, and degrees cut to whole ones before minutes are read, as all solvers do.
+class PlaneCosts final : public PairCosts {
+ public:
+  PlaneCosts(Distance distance, std::vector<Point> points) : distance_(distance), points_(std::move(points)) {
+    if (distance_ != Distance::kGeographic) return;
+    constexpr double kPi = 3.141592;
+    const auto radians = [](double value) {
+      const double degrees = std::trunc(value);
+      return kPi * (degrees + 5.0 * (value - degrees) / 3.0) / 180.0;
+    };
+    for (Point& point : points_) point = {radians(point.x), radians(point.y)};
+  }
+
+  double cost(NodeId from, NodeId to) const override {
+    const Point& a = points_[from];
+    const Point& b = points_[to];
+    const double dx = a.x - b.x;
+    const double dy = a.y - b.y;
+    switch (distance_) {
+      case Distance::kEuclidean:
+        return std::floor(std::sqrt(dx * dx + dy * dy) + 0.5);
+      case Distance::kCeiling:
+        return std::ceil(std::sqrt(dx * dx + dy * dy));
+      case Distance::kPseudoEuclidean:
+        return std::ceil(std::sqrt((dx * dx + dy * dy) / 10.0));
+      case Distance::kGeographic:
+        break;
+    }
+    constexpr double kRadius = 6378.388;
+    if (from == to) return 0;
+    const double q1 = std::cos(dy);
+    const double q2 = std::cos(dx);
+    const double q3 = std::cos(a.x + b.x);
+    return std::floor(kRadius * std::acos(0.5 * ((1.0 + q1) * q2 - (1.0 - q1) * q3)) + 1.0);
+  }
+
+ private:
+  Distance distance_;
+  std::vector<Point> points_;
+};
+
+class MatrixCosts final : public PairCosts {
+ public:
+  MatrixCosts(NodeId nodes, std::vector<double> costs) : nodes_(nodes), costs_(std::move(costs)) {}
+  double cost(NodeId from, NodeId to) const override {
+    return costs_[static_cast<std::size_t>(from) * static_cast<std::size_t>(nodes_) + static_cast<std::size_t>(to)];
+  }
+
+ private:
+  NodeId nodes_;
+  std::vector<double> costs_;  // [N, N]
+};
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+
+  GraphMap read() {
+    while (skip_space() && read_entry()) {
+    }
+    return build();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what, const std::string& got = {}) const {
+    throw Error({.what = what, .got = got, .where = source_});
+  }
+
+  bool skip_space() {
+    at_ = std::min(text_.find_first_not_of(kSpace, at_), text_.size());
+    return at_ < text_.size();
+  }
+  std::string_view word(std::string_view ends = kSpace) {
+    skip_space();
+    const std::size_t end = std::min(text_.find_first_of(ends, at_), text_.size());
+    const std::string_view found = text_.substr(at_, end - at_);
+    at_ = end;
+    return found;
+  }
+  // What stands after a keyword and its colon, to the end of the line.
+  std::string_view value_of_line() {
+    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    std::string_view line = text_.substr(at_, end - at_);
+    at_ = end;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t:"), line.size()));
+    return line.substr(0, line.find_last_not_of(kSpace) + 1);
+  }
+  double to_number(std::string_view found, std::string_view where) const {
+    double value = 0;
+    if (found.starts_with('+')) found.remove_prefix(1);
+    const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
+    if (found.empty()) fail(fmt::format("the file ends within {}", where));
+    if (error != std::errc() || end != found.data() + found.size() || !std::isfinite(value)) {
+      fail(fmt::format("not a number in {}", where), in_quotes(found));
+    }
+    return value;
+  }
+  double number(std::string_view where) { return to_number(word(), where); }
+  NodeId node(std::string_view where) {
+    const double value = number(where);
+    if (value == std::floor(value) && value >= 1 && value <= nodes_) return static_cast<NodeId>(value) - 1;
+    fail(fmt::format("no such node in {}: nodes are 1 to {}", where, nodes_), fmt::format("'{:g}'", value));
+  }
+
+  // A line of the header or a section; false at the end.
+  bool read_entry() {
+    const std::string keyword(word(" \t\r\n:"));
+    if (keyword == "EOF") return false;
+    if (keyword.ends_with("_SECTION")) {
+      value_of_line();
+      if (nodes_ == 0) fail(fmt::format("{} comes before DIMENSION", keyword));
+      if (!header_.try_emplace(keyword).second) fail(fmt::format("{} comes twice", keyword));
+      read_section(keyword);
+      return true;
+    }
+    const std::string_view value = value_of_line();
+    if (!header_.try_emplace(keyword, value).second && keyword != "COMMENT") fail(fmt::format("{} comes twice", keyword));
+    if (keyword == "DIMENSION") {
+      const double count = to_number(value, keyword);
+      if (!(count >= 1 && count <= kMostNodes && count == std::floor(count))) {
+        fail(fmt::format("bad DIMENSION: a number of nodes from 1 to {}", kMostNodes), in_quotes(value));
+      }
+      nodes_ = static_cast<NodeId>(count);
+    } else if (keyword == "COST_LIMIT") {
+      const double limit = to_number(value, keyword);
+      if (limit < 0) fail("a negative COST_LIMIT", in_quotes(value));
+      task_.budget = limit;
+    }
+    return true;
+  }
+
+  void read_section(const std::string& name) {
+    const auto count = static_cast<std::size_t>(nodes_);
+    if (name == "NODE_COORD_SECTION" || name == "DISPLAY_DATA_SECTION") {
+      std::vector<Point> points(count);
+      for (NodeId i = 0; i < nodes_; ++i) {
+        Point& point = points[node(name)];
+        point.x = number(name);
+        point.y = number(name);
+      }
+      if (name == "NODE_COORD_SECTION") points_ = std::move(points);
+    } else if (name == "NODE_SCORE_SECTION") {
+      prizes_.assign(count, -1);
+      for (NodeId i = 0; i < nodes_; ++i) {
+        double& prize = prizes_[node(name)];
+        prize = number(name);
+        if (prize < 0) fail("a negative score in NODE_SCORE_SECTION", fmt::format("'{:g}'", prize));
+      }
+      if (std::find(prizes_.begin(), prizes_.end(), -1) != prizes_.end()) fail("a node without a score");
+    } else if (name == "DEPOT_SECTION") {
+      for (std::string_view found = word(); found != "-1"; found = word()) {
+        const double value = to_number(found, name);
+        if (task_.start != kNoNode) fail("more than one depot");
+        if (!(value >= 1 && value <= nodes_ && value == std::floor(value))) fail("no such depot", in_quotes(found));
+        task_.start = task_.end = static_cast<NodeId>(value) - 1;
+      }
+    } else if (name == "EDGE_WEIGHT_SECTION") {
+      read_matrix();
+    } else {
+      fail("an unknown section", in_quotes(name));
+    }
+  }
+
+  void read_matrix() {
+    const auto count = static_cast<std::size_t>(nodes_);
+    if (nodes_ > kMostExplicit) fail(fmt::format("more than {} nodes in EDGE_WEIGHT_SECTION", kMostExplicit));
+    const std::string& format = header_["EDGE_WEIGHT_FORMAT"];
+    const bool full = format == "FULL_MATRIX";
+    const bool upper = format.starts_with("UPPER_");
+    const bool diagonal = format.ends_with("_DIAG_ROW");
+    if (!full && (!(upper || format.starts_with("LOWER_")) || !format.ends_with("_ROW"))) {
+      fail("bad EDGE_WEIGHT_FORMAT: FULL_MATRIX, or rows of one half", in_quotes(format));
+    }
+    matrix_.assign(count * count, 0);
+    for (std::size_t row = 0; row < count; ++row) {
+      const std::size_t begin = full || !upper ? 0 : row + (diagonal ? 0 : 1);
+      const std::size_t end = full || upper ? count : row + (diagonal ? 1 : 0);
+      for (std::size_t col = begin; col < end; ++col) {
+        const double cost = number("EDGE_WEIGHT_SECTION");
+        if (cost < 0) fail("a negative cost in EDGE_WEIGHT_SECTION", fmt::format("'{:g}'", cost));
+        double& here = matrix_[row * count + col];  // of a full matrix, set when the other row was read
+        if (full && col < row && here != cost) fail("a matrix that is not symmetric");
+        here = matrix_[col * count + row] = cost;
+      }
+    }
+  }
+
+  GraphMap build() {
+    const std::string& type = header_["TYPE"];
+    if (type != "OP" && type != "TSP") fail("bad TYPE: OP or TSP", in_quotes(type));
+    if (nodes_ == 0) fail("DIMENSION is missing");
+    if (type == "OP") {
+      for (const char* const needed : {"COST_LIMIT", "NODE_SCORE_SECTION", "DEPOT_SECTION"}) {
+        if (!header_.contains(needed)) fail(fmt::format("{} is missing", needed));
+      }
+      if (task_.start == kNoNode) fail("DEPOT_SECTION names no depot");
+    }
+    GraphMap map{.graph = Graph::complete(nodes_, pair_costs()),
+                 .blocked = std::vector<bool>(nodes_),
+                 .labels = {},
+                 .prizes = std::move(prizes_),
+                 .task = task_};
+    for (NodeId node = 1; node <= nodes_; ++node) map.labels.push_back(std::to_string(node));
+    return map;
+  }
+
+  std::shared_ptr<const PairCosts> pair_costs() {
+    const std::string& type = header_["EDGE_WEIGHT_TYPE"];
+    if (type == "EXPLICIT") {
+      if (matrix_.empty()) fail("EDGE_WEIGHT_SECTION is missing");
+      return std::make_shared<MatrixCosts>(nodes_, std::move(matrix_));
+    }
+    static const std::map<std::string, Distance> distances = {{"EUC_2D", Distance::kEuclidean},
+                                                              {"CEIL_2D", Distance::kCeiling},
+                                                              {"GEO", Distance::kGeographic},
+                                                              {"ATT", Distance::kPseudoEuclidean}};
+    const auto found = distances.find(type);
+    if (found == distances.end()) {
+      fail("bad EDGE_WEIGHT_TYPE: EUC_2D, CEIL_2D, GEO, ATT or EXPLICIT", in_quotes(type));
+    }
+    if (points_.empty()) fail("NODE_COORD_SECTION is missing");
+    return std::make_shared<PlaneCosts>(found->second, std::move(points_));
+  }
+
+  std::string_view text_;
+  const std::string& source_;
+  std::size_t at_ = 0;
+  NodeId nodes_ = 0;
+  std::map<std::string, std::string> header_;  // and the sections met
+  GivenTask task_;
+  std::vector<Point> points_;
+  std::vector<double> prizes_;
+  std::vector<double> matrix_;  // [N, N]
+};
+
+}  // namespace
+
+bool is_tsplib(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+  const std::string_view keyword = text.substr(0, text.find_first_of(" \t\r\n:"));
+  return std::find(kFirstKeywords.begin(), kFirstKeywords.end(), keyword) != kFirstKeywords.end();
+}
+
+GraphMap parse_tsplib(std::string_view text, const std::string& source) {
+  return Reader(text, source).read();
+}
+
+}  // namespace graphdrl
