@@ -8,27 +8,39 @@ namespace {
 
 // Chosen on validation worlds at a tenth of EA4OP's time (docs/search.md).
 constexpr double kPrice = 0.6;  // of a share of the budget, in shares of the prize
-constexpr double kFirstTemperature = 1;
 constexpr double kLastTemperature = 0.08;
-constexpr double kNoStringShare = 0.5;  // of steps that only turn a part of the route round
 constexpr int kMostStrings = 2;
 constexpr int kShort = 5;  // how long a string is at most, mostly
 constexpr int kLong = 40;  // and sometimes: a branch of a maze or of a tree
-constexpr double kLongShare = 0.06;
 constexpr double kBlink = 0.03;     // of places passed over
 constexpr int kTwoOptNear = 10;
 constexpr int kTurnNear = 5;
 constexpr int kTurnTries = 4;
 constexpr int kLooks = 256;  // at most one copy of the best route in T / kLooks steps
+constexpr int kGrownNear = 10;   // of a target that a region grows from
+constexpr int kMostFailures = 5;  // to put a target into a region, and it grows no more
+constexpr int kSeedTries = 20;
 constexpr double kRounding = 1e-9;
 constexpr double kTiny = 1e-300;
 
+constexpr double kSelectiveShare = 0.3;  // of the prize left out at the start, from which on the choice counts
+
 }  // namespace
+
+constexpr Annealing::Style Annealing::kOrdering = {
+    .first_temperature = 1, .no_string_share = 0.5, .long_share = 0.06, .elsewhere_share = 0, .region_share = 0};
+constexpr Annealing::Style Annealing::kSelective = {
+    .first_temperature = 3, .no_string_share = 0.3, .long_share = 0.15, .elsewhere_share = 0.3, .region_share = 0.1};
+
+bool Annealing::is_selective(const Targets& targets, double prize) {
+  return prize < (1 - kSelectiveShare) * targets.total_prize();
+}
 
 Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed)
     : targets_(&targets),
       limit_(limit),
       rng_(seed),
+      style_(kOrdering),
       route_(targets),
       unit_(targets.total_prize() / std::max(1, targets.end())),
       price_(0),
@@ -37,18 +49,23 @@ Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed)
 
 void Annealing::start(const std::vector<int>& order, const std::vector<double>& links) {
   route_.assign(order, links);
-  price_ = limit_ > 0 ? kPrice * route_.prize() / limit_ : 0;
+  style_ = is_selective(*targets_, route_.prize()) ? kSelective : kOrdering;
   remember();
 }
 
 void Annealing::step(double progress) {
   const auto targets = static_cast<std::uint32_t>(targets_->end());
   const int seed = static_cast<int>(rng_.below(targets));
-  ruin(seed);
-  if (targets_->symmetric()) turn_near(seed);
-  recreate(seed);
+  if (style_.region_share > 0 && rng_.uniform() < style_.region_share) {
+    move_region(seed);
+  } else {
+    ruin(seed);
+    if (targets_->symmetric()) turn_near(seed);
+    recreate(seed);
+  }
   if (targets_->symmetric()) improve();
-  const double temperature = unit_ * kFirstTemperature * std::pow(kLastTemperature / kFirstTemperature, progress);
+  const double temperature =
+      unit_ * style_.first_temperature * std::pow(kLastTemperature / style_.first_temperature, progress);
   if (accept(temperature)) {
     route_.keep();
   } else {
@@ -66,9 +83,15 @@ void Annealing::remember() {
   const double more = route_.prize() - best_prize_;
   if (more < -kRounding * unit_) return;
   if (more < kRounding * unit_ && route_.cost() >= best_cost_ * (1 - kRounding)) return;
-  best_ = route_.order();
+  best_.clear();
+  best_links_.assign(1, route_.link(0));
+  for (int target = route_.next(0); target != targets_->end(); target = route_.next(target)) {
+    best_.push_back(target);
+    best_links_.push_back(route_.link(target));
+  }
   best_prize_ = route_.prize();
   best_cost_ = route_.cost();
+  if (limit_ > 0) price_ = kPrice * best_prize_ / limit_;
 }
 
 bool Annealing::accept(double temperature) {
@@ -79,28 +102,65 @@ bool Annealing::accept(double temperature) {
 // Takes out strings of targets that stand together and contain one near the seed.
 void Annealing::ruin(int seed) {
   out_.clear();
-  if (targets_->symmetric() && rng_.uniform() < kNoStringShare) return;
+  if (targets_->symmetric() && rng_.uniform() < style_.no_string_share) return;
   int strings = 1 + static_cast<int>(rng_.below(kMostStrings));
-  const std::uint32_t longest = rng_.uniform() < kLongShare ? kLong : kShort;
-  const auto take_string = [&](int target) {
+  const std::uint32_t longest = rng_.uniform() < style_.long_share ? kLong : kShort;
+  const auto take_one = [&](int target) {
     if (target == 0 || !route_.contains(target)) return;
     const auto length = static_cast<int>(1 + rng_.below(longest));
     for (auto back = rng_.below(length); back > 0 && route_.previous(target) != 0; --back) {
       target = route_.previous(target);
     }
-    for (int i = 0; i < length && target != targets_->end(); ++i) {
-      const int next = route_.next(target);
-      route_.remove(target);
-      out_.push_back(target);
-      target = next;
-    }
+    take_string(target, length);
     --strings;
   };
-  take_string(seed);
+  take_one(seed);
   for (const int target : targets_->near(seed)) {
     if (strings == 0) break;
-    take_string(target);
+    take_one(target);
   }
+}
+
+void Annealing::take_string(int first, int length) {
+  for (int target = first; length > 0 && target != targets_->end(); --length) {
+    const int next = route_.next(target);
+    route_.remove(target);
+    out_.push_back(target);
+    target = next;
+  }
+}
+
+// Takes up to half of the route out, lets what is left of the budget grow a region around a target that is not in it,
+// and puts back what still fits.
+void Annealing::move_region(int seed) {
+  out_.clear();
+  const auto targets = static_cast<std::uint32_t>(targets_->end());
+  for (int i = 0; i < kSeedTries && route_.contains(seed); ++i) seed = static_cast<int>(rng_.below(targets));
+  int first = 0;
+  for (int i = 0; i < kSeedTries && (first == 0 || !route_.contains(first)); ++i) {
+    first = static_cast<int>(rng_.below(targets));
+  }
+  const auto half = static_cast<std::uint32_t>(best_.size() / 2 + 1);
+  if (first != 0 && route_.contains(first)) take_string(first, static_cast<int>(1 + rng_.below(half)));
+
+  grown_.assign(1, seed);
+  int failures = 0;
+  for (std::size_t i = 0; i < grown_.size() && failures < kMostFailures; ++i) {
+    const int target = grown_[i];
+    if (!route_.contains(target)) put_back(target);
+    if (!route_.contains(target)) {
+      ++failures;
+      continue;
+    }
+    const auto near = targets_->near(target);
+    for (const int next : near.first(std::min<std::size_t>(kGrownNear, near.size()))) {
+      if (marked_[next] != 0 || route_.contains(next)) continue;
+      marked_[next] = 1;
+      grown_.push_back(next);
+    }
+  }
+  for (const int target : grown_) marked_[target] = 0;
+  put_back_out();
 }
 
 // A random 2-opt move near a target, if it can be paid for.
@@ -137,7 +197,7 @@ void Annealing::turn_near(int target) {
   }
 }
 
-// Puts back what was taken out, and what is near, in random order.
+// Puts back what was taken out, and what is near.
 void Annealing::recreate(int seed) {
   const std::size_t taken = out_.size();
   for (const int target : out_) marked_[target] = 1;
@@ -147,8 +207,23 @@ void Annealing::recreate(int seed) {
   add(seed);
   for (const int target : targets_->near(seed)) add(target);
   for (std::size_t i = 0; i < taken; ++i) marked_[out_[i]] = 0;
+  if (style_.elsewhere_share > 0 && rng_.uniform() < style_.elsewhere_share) {
+    // What was given up here may pay elsewhere.
+    const auto other = static_cast<int>(rng_.below(static_cast<std::uint32_t>(targets_->end())));
+    if (!route_.contains(other)) put_back(other);
+    for (const int target : targets_->near(other)) {
+      if (!route_.contains(target)) put_back(target);
+    }
+  }
+  put_back_out();
+}
+
+// In random order.
+void Annealing::put_back_out() {
   for (std::size_t i = out_.size(); i > 1; --i) std::swap(out_[i - 1], out_[rng_.below(static_cast<std::uint32_t>(i))]);
-  for (const int target : out_) put_back(target);
+  for (const int target : out_) {
+    if (!route_.contains(target)) put_back(target);
+  }
 }
 
 // The cheapest place for a target that can be paid for; after == kNone where there is none.
@@ -190,6 +265,13 @@ Annealing::Place Annealing::cheapest_place(int target) {
     }
   }
   consider(last, targets_->cost(last, target), targets_->cost(target, targets_->end()));
+  if (style_.region_share == 0 || best.after != kNone || !targets_->has_table()) return best;
+  // Where nothing near is in the route, a region begins here.
+  const auto near = targets_->near(target);
+  if (std::any_of(near.begin(), near.end(), [&](int one) { return route_.contains(one); })) return best;
+  for (int at = 0; at != last; at = route_.next(at)) {
+    consider(at, targets_->cost(at, target), targets_->cost(target, route_.next(at)));
+  }
   return best;
 }
 

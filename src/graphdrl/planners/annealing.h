@@ -20,11 +20,16 @@ class Annealing {
   // Starts with a route: targets in order, and what the ways to each of them and to the end cost.
   void start(const std::vector<int>& order, const std::vector<double>& links);
 
+  // Whether a route of this prize leaves so much out that it matters more what to visit than in which order. Then steps
+  // also move budget between regions, and begin hotter.
+  static bool is_selective(const Targets& targets, double prize);
+
   // One step at so far through the schedule, 0 to 1.
   void step(double progress);
 
   // The best route up to now.
   const std::vector<int>& best();
+  const std::vector<double>& best_links() const { return best_links_; }  // the costs of the ways, as for start()
   double best_prize() const { return best_prize_; }
   int best_visits() const { return static_cast<int>(best_.size()); }
 
@@ -37,7 +42,20 @@ class Annealing {
     double out = 0;
   };
 
+  struct Style {
+    double first_temperature;  // in mean prizes
+    double no_string_share;    // of steps that only turn a part of the route round
+    double long_share;         // of steps that take out long strings
+    double elsewhere_share;    // of steps that put targets in at another place too
+    double region_share;       // of steps that move up to half of the route elsewhere
+  };
+  static const Style kOrdering;
+  static const Style kSelective;
+
   void ruin(int seed);
+  void take_string(int first, int length);
+  void move_region(int seed);
+  void put_back_out();
   void turn_near(int target);
   void recreate(int seed);
   Place cheapest_place(int target);
@@ -51,15 +69,18 @@ class Annealing {
   const Targets* targets_;
   double limit_;
   Rng rng_;
+  Style style_;
   Route route_;
   double unit_;   // the mean prize: temperatures are in it
   double price_;  // of a unit of cost
   std::vector<int> out_;  // taken out, or near what was
+  std::vector<int> grown_;  // a region, from its seed on
   std::vector<int> queue_;
   std::vector<char> marked_;  // [T + 1], in queue_ or out_
   std::int64_t steps_ = 0;
   std::int64_t steps_per_look_;  // at whether the route is the best
   std::vector<int> best_;
+  std::vector<double> best_links_;
   double best_prize_ = -1;
   double best_cost_ = 0;
 };

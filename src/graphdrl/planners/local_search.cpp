@@ -19,6 +19,8 @@ constexpr int kChains = 2;           // without a deadline, whatever the number 
 constexpr double kStartShare = 0.05;  // of the time left, for each walk to start with but the first two
 constexpr double kExplorerVisitS = 0.4e-3;  // a first visit of the explorer: it is not begun where it would not end
 constexpr double kBoundShare = 0.05;
+constexpr int kStarts = 9;            // where the choice matters: eight short runs and a long one from the best
+constexpr double kStartsShare = 0.6;  // of the time, for the short ones
 constexpr int kStepsPerLook = 16;  // at the clock; a step takes some microseconds
 constexpr int kMostThreads = 64;
 
@@ -103,22 +105,41 @@ Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report&
     const int before_walk = task.visited_before().count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
     const auto caller = std::this_thread::get_id();
     std::vector<Plan> found(chains);
+    const int starts = Annealing::is_selective(targets, best.prize) ? kStarts : 1;
     parallel_for(chains, [&](int chain) {
-      Annealing annealing(targets, task.limit(), derive_seed(options_.seed, 0, static_cast<std::uint64_t>(chain)));
-      annealing.start(stops.order, stops.links);
-      double elapsed = 0;
-      for (std::int64_t step = 0; step < steps && !met_bound(annealing.best_prize()); ++step) {
-        if (step % kStepsPerLook == 0) {
-          if (deadline) elapsed = std::chrono::duration<double>(steady_clock::now() - begin).count() / time;
-          if (elapsed >= 1 || passed(deadline)) break;
-          if (report && std::this_thread::get_id() == caller) {
-            report({.visited = before_walk + annealing.best_visits(), .bound = bound});
+      Stops from = stops;
+      double prize = -1;
+      // Runs of one schedule each, the last one from the best of those before it.
+      for (int run = 0; run < starts; ++run) {
+        const bool last = run == starts - 1;
+        const double first_share = starts == 1 ? 0 : run * kStartsShare / (starts - 1);
+        const double last_share = last ? 1 : first_share + kStartsShare / (starts - 1);
+        const auto seed = static_cast<std::uint64_t>(chain * kStarts + run);
+        Annealing annealing(targets, task.limit(), derive_seed(options_.seed, 0, seed));
+        const Stops& start = last ? from : stops;
+        annealing.start(start.order, start.links);
+        const auto first_step = static_cast<std::int64_t>(first_share * static_cast<double>(steps));
+        const auto last_step = static_cast<std::int64_t>(last_share * static_cast<double>(steps));
+        double through = 0;
+        for (std::int64_t step = first_step; (endless || step < last_step) && !met_bound(annealing.best_prize()); ++step) {
+          if (step % kStepsPerLook == 0) {
+            const double elapsed =
+                deadline ? std::chrono::duration<double>(steady_clock::now() - begin).count() / time : 0;
+            if (elapsed >= last_share || passed(deadline)) break;
+            through = (elapsed - first_share) / (last_share - first_share);
+            if (report && std::this_thread::get_id() == caller) {
+              report({.visited = before_walk + annealing.best_visits(), .bound = bound});
+            }
           }
+          const double stepped = endless ? 0 : static_cast<double>(step - first_step) / static_cast<double>(last_step - first_step);
+          annealing.step(std::clamp(std::max(through, stepped), 0.0, 1.0));
         }
-        const double through = endless ? 0 : static_cast<double>(step) / static_cast<double>(steps);
-        annealing.step(std::max(elapsed, through));
+        const std::vector<int>& order = annealing.best();
+        if (annealing.best_prize() <= prize) continue;
+        prize = annealing.best_prize();
+        from = {order, annealing.best_links()};
       }
-      found[chain] = plan_of_walk(task, walk_of(task, targets, annealing.best()));
+      found[chain] = plan_of_walk(task, walk_of(task, targets, from.order));
     });
     for (Plan& plan : found) {
       if (plan.cost <= task.limit()) best = better_of(std::move(best), std::move(plan));

@@ -1,0 +1,122 @@
+#include "graphdrl/io/tsplib.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "../support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kHeader =
+    "NAME : four\nTYPE : OP\nCOMMENT : a: b\nDIMENSION : 4\nCOST_LIMIT : 20\nEDGE_WEIGHT_TYPE : EUC_2D\n";
+const std::string kPlaces = "NODE_COORD_SECTION\n1 0 0\n3 3.0e0 4\n2 0 1.5\n4 0 0\n";
+const std::string kScores = "NODE_SCORE_SECTION\n1 0\n2 7\n3 2\n4 5\n";
+const std::string kDepot = "DEPOT_SECTION\n 2\n -1\nEOF\n";
+
+GraphMap parse(const std::string& text) {
+  return parse_tsplib(text, "four.oplib");
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  return text.replace(text.find(what), what.size(), with);
+}
+
+TEST(Tsplib, ReadsAnOrienteeringProblem) {
+  const std::string text = kHeader + kPlaces + kScores + kDepot;
+  EXPECT_TRUE(is_tsplib(text));
+  EXPECT_FALSE(is_tsplib("..#\n"));
+  EXPECT_FALSE(is_tsplib(""));
+  const GraphMap map = parse(text);
+  EXPECT_EQ(map.labels, (std::vector<std::string>{"1", "2", "3", "4"}));
+  EXPECT_EQ(map.prizes, (std::vector<double>{0, 7, 2, 5}));
+  EXPECT_EQ(map.task.budget, 20);
+  EXPECT_EQ(map.task.start, 1);
+  EXPECT_EQ(map.task.end, 1);
+  const Graph& graph = map.graph;
+  EXPECT_TRUE(graph.is_complete() && graph.weighted() && graph.integer_costs() && !graph.directed());
+  EXPECT_EQ(graph.edge_count(), 6);
+  const std::vector<std::vector<double>> costs = {{0, 2, 5, 0}, {2, 0, 4, 2}, {5, 4, 0, 5}, {0, 2, 5, 0}};
+  for (NodeId node = 0; node < 4; ++node) {
+    EXPECT_EQ(graph.degree(node), 3);
+    EXPECT_EQ(graph.index_of(node, node), -1);
+    for (NodeId other = 0; other < 4; ++other) {
+      if (other == node) continue;
+      const int index = graph.index_of(node, other);
+      EXPECT_EQ(graph.neighbours(node)[index], other);
+      EXPECT_EQ(graph.cost(node, index), costs[node][other]);
+    }
+  }
+  EXPECT_EQ(graph.min_cost(), 0);
+  EXPECT_EQ(graph.max_cost(), 5);
+  EXPECT_EQ(graph.mean_cost(), 3);
+  EXPECT_EQ(graph.without({false, true, false, false}).edge_count(), 3);
+}
+
+// Lengths of edges that TSPLIB's own instances have: burma14 from 1 to 2, att48 from 1 to 2 and from 1 to 3.
+TEST(Tsplib, ComputesTheDistancesOfTsplib) {
+  const auto cost = [](const std::string& type, const std::string& one, const std::string& other) {
+    return parse("TYPE: TSP\nDIMENSION: 2\nEDGE_WEIGHT_TYPE: " + type + "\nNODE_COORD_SECTION\n1 " + one + "\n2 " + other +
+                 "\n")
+        .graph.cost(0, 0);
+  };
+  EXPECT_EQ(cost("GEO", "16.47 96.10", "16.47 94.44"), 153);
+  EXPECT_EQ(cost("ATT", "6734 1453", "2233 10"), 1495);
+  EXPECT_EQ(cost("ATT", "6734 1453", "5530 1424"), 381);
+  EXPECT_EQ(cost("CEIL_2D", "0 0", "1 1"), 2);
+  EXPECT_EQ(cost("EUC_2D", "0 0", "1 1"), 1);
+}
+
+TEST(Tsplib, ReadsMatricesInEveryForm) {
+  const auto read = [](const std::string& format, const std::string& numbers) {
+    const Graph graph = parse("TYPE: TSP\nDIMENSION: 3\nEDGE_WEIGHT_TYPE: EXPLICIT\nEDGE_WEIGHT_FORMAT: " + format +
+                              "\nEDGE_WEIGHT_SECTION\n" + numbers + "\nEOF\n")
+                            .graph;
+    return std::vector<double>{graph.cost(0, 0), graph.cost(0, 1), graph.cost(1, 0)};
+  };
+  const std::vector<double> expected = {1, 2, 3};
+  EXPECT_EQ(read("FULL_MATRIX", "0 1 2 1 0 3 2 3 0"), expected);
+  EXPECT_EQ(read("UPPER_ROW", "1 2\n3"), expected);
+  EXPECT_EQ(read("LOWER_ROW", "1 2 3"), expected);
+  EXPECT_EQ(read("UPPER_DIAG_ROW", "0 1 2 0 3 0"), expected);
+  EXPECT_EQ(read("LOWER_DIAG_ROW", "0 1 0 2 3 0"), expected);
+  EXPECT_THAT(error_of([&] { read("FULL_MATRIX", "0 1 2 1 0 3 2 4 0"); }), HasSubstr("not symmetric"));
+  EXPECT_THAT(error_of([&] { read("FUNCTION", ""); }), HasSubstr("bad EDGE_WEIGHT_FORMAT"));
+  EXPECT_THAT(error_of([&] { read("UPPER_ROW", "1 2"); }), HasSubstr("EDGE_WEIGHT_SECTION"));
+  EXPECT_THAT(error_of([&] { read("UPPER_ROW", "1 -2 3"); }), HasSubstr("a negative cost"));
+}
+
+TEST(Tsplib, SaysWhatIsWrong) {
+  const std::string whole = kHeader + kPlaces + kScores + kDepot;
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {kHeader + kPlaces + kScores, "DEPOT_SECTION is missing"},
+      {kHeader + kPlaces + kDepot, "NODE_SCORE_SECTION is missing"},
+      {kHeader + kScores + kDepot, "NODE_COORD_SECTION is missing"},
+      {replaced(whole, "COST_LIMIT : 20\n", ""), "COST_LIMIT is missing"},
+      {replaced(whole, "DIMENSION : 4\n", ""), "comes before DIMENSION"},
+      {replaced(whole, ": 4\n", ": 5\n"), "not a number in NODE_COORD_SECTION"},
+      {replaced(whole, ": 4\n", ": 0\n"), "bad DIMENSION"},
+      {replaced(whole, ": 20", ": -20"), "a negative COST_LIMIT"},
+      {replaced(whole, ": 20", ": many"), "not a number in COST_LIMIT"},
+      {replaced(whole, "EUC_2D", "XRAY1"), "bad EDGE_WEIGHT_TYPE"},
+      {replaced(whole, "EUC_2D", "EXPLICIT"), "EDGE_WEIGHT_SECTION is missing"},
+      {replaced(whole, ": OP", ": ATSP"), "bad TYPE"},
+      {replaced(whole, "4 5\n", "4 -5\n"), "a negative score"},
+      {replaced(whole, "4 5\n", "4 nan\n"), "not a number in NODE_SCORE_SECTION"},
+      {replaced(whole, "4 5\n", "3 5\n"), "a node without a score"},
+      {replaced(whole, " 2\n -1", " 7\n -1"), "no such depot"},
+      {replaced(whole, " 2\n -1", " 2 3\n -1"), "more than one depot"},
+      {replaced(whole, " 2\n -1", " -1"), "names no depot"},
+      {replaced(whole, "NODE_SCORE", "NODE_SCARE"), "an unknown section"},
+      {whole.substr(0, whole.find("-1")), "the file ends within DEPOT_SECTION"},
+      {whole.substr(0, whole.find("4 5\n")), "the file ends within NODE_SCORE_SECTION"},
+  };
+  for (const auto& [text, expected] : cases) {
+    EXPECT_THAT(error_of([&] { parse(text); }), ::testing::AllOf(HasSubstr(expected), HasSubstr("four.oplib")));
+  }
+}
+
+}  // namespace
+}  // namespace graphdrl
