@@ -64,6 +64,7 @@ void Annealing::step(double progress) {
     recreate(seed);
   }
   if (targets_->symmetric()) improve();
+  if (!targets_->has_table()) settle_links();
   const double temperature =
       unit_ * style_.first_temperature * std::pow(kLastTemperature / style_.first_temperature, progress);
   if (accept(temperature)) {
@@ -285,6 +286,23 @@ void Annealing::enqueue(int target) {
   if (target == targets_->end() || marked_[target] != 0) return;
   marked_[target] = 1;
   queue_.push_back(target);
+}
+
+// Without a table, what a way costs that a change left is known at most. Here it is searched for.
+void Annealing::settle_links() {
+  loose_.clear();
+  route_.changed([&](int target) {
+    if (!route_.contains(target)) return;
+    loose_.push_back(target);
+    if (target != 0) loose_.push_back(route_.previous(target));
+  });
+  for (const int target : loose_) {
+    const int next = route_.next(target);
+    if (targets_->cost(target, next) != kNoLimit) continue;
+    const double link = route_.link(target);
+    const double cost = targets_->searched_cost(target, next, link, search_);
+    if (cost < link) route_.relink(target, cost);
+  }
 }
 
 // 2-opt [Croes 1958] from what changed, until nothing is left to gain there.

@@ -61,6 +61,7 @@ class Annealing {
   Place cheapest_place(int target);
   void put_back(int target);
   void improve();
+  void settle_links();
   bool two_opt(int target);
   bool accept(double temperature);
   void remember();
@@ -76,6 +77,8 @@ class Annealing {
   std::vector<int> out_;  // taken out, or near what was
   std::vector<int> grown_;  // a region, from its seed on
   std::vector<int> queue_;
+  std::vector<int> loose_;  // targets whose way on may cost less than is known
+  NearestFirst search_;
   std::vector<char> marked_;  // [T + 1], in queue_ or out_
   std::int64_t steps_ = 0;
   std::int64_t steps_per_look_;  // at whether the route is the best

@@ -40,6 +40,13 @@ void Route::reverse(int first, int last, double in, double out) {
   turn(first, last, in, out);
 }
 
+void Route::relink(int target, double link) {
+  Stop& stop = stops_[target];
+  changes_.push_back({Kind::kRelinked, target, kNone, stop.link, 0});
+  cost_ += link - stop.link;
+  stop.link = link;
+}
+
 void Route::undo() {
   for (; !changes_.empty(); changes_.pop_back()) {
     const Change& change = changes_.back();
@@ -52,6 +59,9 @@ void Route::undo() {
         break;
       case Kind::kReversed:
         turn(change.target, change.other, change.in, change.out);
+        break;
+      case Kind::kRelinked:
+        stops_[change.target].link = change.in;
         break;
     }
   }

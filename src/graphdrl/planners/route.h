@@ -33,6 +33,9 @@ class Route {
   // REQUIRES: edges lead both ways.
   void reverse(int first, int last, double in, double out);
 
+  // Says what the way on from a target costs.
+  void relink(int target, double link);
+
   void keep() {
     changes_.clear();
     kept_cost_ = cost_;
@@ -58,12 +61,12 @@ class Route {
     double link = 0;
     std::int64_t label = 0;
   };
-  enum class Kind { kInserted, kRemoved, kReversed };
+  enum class Kind { kInserted, kRemoved, kReversed, kRelinked };
   struct Change {
     Kind kind;
     int target;    // the first after a reversal
     int other;     // it stood after this one; the last after a reversal
-    double in;     // ways as they were
+    double in;     // ways as they were; `in` alone, of the way on, where that was relinked
     double out;
   };
 

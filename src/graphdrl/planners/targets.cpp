@@ -12,7 +12,7 @@ constexpr int kMostMet = 32 * Targets::kNearest;
 
 }  // namespace
 
-Targets::Targets(const Task& task, Deadline deadline) {
+Targets::Targets(const Task& task, Deadline deadline) : view_(task.view) {
   const View& view = task.view;
   const double limit = task.limit();
   numbers_.assign(view.node_count(), -1);
@@ -72,6 +72,17 @@ void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near
     if (from % 16 == 0 && passed(deadline)) complete_ = false;
     if (!complete_) break;
   }
+}
+
+double Targets::searched_cost(int from, int to, double most, NearestFirst& search) const {
+  if (to == end()) return to_end_[from];
+  double found = kNoLimit;
+  search.run(view_.open(), nodes_[from], most, [&](NodeId node, double cost) {
+    if (node != nodes_[to]) return Next::kThrough;
+    found = cost;
+    return Next::kEnd;
+  });
+  return found;
 }
 
 double Targets::near_cost(int from, int to) const {

@@ -40,6 +40,9 @@ class Targets {
     if (!table_.empty()) return row(from)[to];
     return to == end() ? to_end_[from] : near_cost(from, to);
   }
+  // The same, searched for in the graph: for at most so much, else kNoLimit. Cost: what is nearer.
+  double searched_cost(int from, int to, double most, NearestFirst& search) const;
+
   // From a target other than the end to each, [T + 1]. REQUIRES: there is a table.
   const double* row(int from) const { return table_.data() + static_cast<std::size_t>(from) * prizes_.size(); }
   bool has_table() const { return !table_.empty(); }
@@ -52,6 +55,7 @@ class Targets {
   void find_near(const Graph& graph, double limit, std::vector<int>& near, std::vector<std::int64_t>& begin,
                  std::vector<double>* costs, Deadline deadline);
 
+  View view_;
   std::vector<NodeId> nodes_;     // [T]
   std::vector<int> numbers_;      // [N]
   std::vector<double> prizes_;    // [T + 1]
