@@ -1,7 +1,7 @@
 #include "graphdrl/planners/local_search.h"
 
 #include <algorithm>
-#include <atomic>
+#include <initializer_list>
 #include <thread>
 
 #include "graphdrl/base/parallel.h"
@@ -19,10 +19,9 @@ constexpr int kChains = 2;           // without a deadline, whatever the number 
 constexpr double kStartShare = 0.05;  // of the time left, for each walk to start with but the first two
 constexpr double kExplorerVisitS = 0.4e-3;  // a first visit of the explorer: it is not begun where it would not end
 constexpr double kBoundShare = 0.05;
-constexpr int kStarts = 9;            // where the choice matters: eight short runs and a long one from the best
-constexpr double kStartsShare = 0.6;  // of the time, for the short ones
+constexpr int kShortRuns = 8;        // where the choice matters, before a long one from the best of them
+constexpr double kShortShare = 0.6;  // of the schedule, for all short ones
 constexpr int kStepsPerLook = 16;  // at the clock; a step takes some microseconds
-constexpr int kMostThreads = 64;
 
 Deadline share_of(Deadline deadline, double share) {
   if (!deadline) return std::nullopt;
@@ -30,14 +29,20 @@ Deadline share_of(Deadline deadline, double share) {
   return now + std::chrono::duration_cast<steady_clock::duration>(share * (*deadline - now));
 }
 
+bool is_met(double bound, double prize) {
+  return prize >= bound * (1 - kPrizeRounding);
+}
+
 // What a walk makes for: its targets in the order of first visits, and the costs of the ways to each, and to the end.
 struct Stops {
   std::vector<int> order;
   std::vector<double> links;
+  double prize;
 };
 
-Stops stops_of(const Task& task, const Targets& targets, std::span<const NodeId> walk) {
-  Stops stops;
+Stops stops_of(const Task& task, const Targets& targets, const Plan& plan) {
+  const std::vector<NodeId>& walk = plan.walk;
+  Stops stops{.order = {}, .links = {}, .prize = plan.prize};
   std::vector<char> taken(targets.end());
   double cost = 0;
   for (std::size_t i = 1; i < walk.size(); ++i) {
@@ -63,6 +68,74 @@ std::vector<NodeId> walk_of(const Task& task, const Targets& targets, std::span<
   return walk;
 }
 
+// How much there is to do: so many steps, or until a deadline, or both.
+class CoolingSchedule {
+ public:
+  // steps: 0 where the deadline alone counts.
+  CoolingSchedule(std::int64_t steps, Deadline deadline) : steps_(steps), deadline_(deadline) {
+    if (deadline_) time_ = std::chrono::duration<double>(*deadline_ - begin_).count();
+  }
+
+  // The share that is over after so many steps.
+  double done(std::int64_t steps) const {
+    double share = steps_ > 0 ? static_cast<double>(steps) / static_cast<double>(steps_) : 0;
+    if (deadline_) {
+      const double elapsed = std::chrono::duration<double>(steady_clock::now() - begin_).count();
+      share = std::max(share, time_ > 0 ? elapsed / time_ : 1);
+    }
+    return planning_stopped() ? 1 : share;
+  }
+  // How many steps to take before the next look at it, after so many.
+  int steps_to_look(std::int64_t steps) const {
+    return steps_ == 0 ? kStepsPerLook : static_cast<int>(std::min<std::int64_t>(kStepsPerLook, steps_ - steps));
+  }
+
+ private:
+  steady_clock::time_point begin_ = steady_clock::now();
+  std::int64_t steps_;
+  Deadline deadline_;
+  double time_ = 0;
+};
+
+// Chains of one task: what they share.
+struct Anneal {
+  const Task& task;
+  const Targets& targets;
+  const CoolingSchedule& schedule;
+  double bound;
+  std::function<void(int visits)> tell;
+
+  // One run from a route, from one share of the schedule to another. steps: taken by the chain up to now.
+  Stops run(const Stops& start, std::uint64_t seed, double first, double last, std::int64_t& steps) const {
+    Annealing annealing(targets, task.limit(), seed);
+    annealing.start(start.order, start.links);
+    for (double done = schedule.done(steps); done < last && !is_met(bound, annealing.best_prize());
+         done = schedule.done(steps)) {
+      const double progress = std::clamp((done - first) / (last - first), 0.0, 1.0);
+      const int count = schedule.steps_to_look(steps);
+      for (int i = 0; i < count && !is_met(bound, annealing.best_prize()); ++i) annealing.step(progress);
+      steps += count;
+      tell(annealing.best_visits());
+    }
+    const std::vector<int>& order = annealing.best();
+    return {order, annealing.best_links(), annealing.best_prize()};
+  }
+
+  // Where the choice matters, several short runs, and one from the best of them; else one.
+  Stops chain(const Stops& start, std::uint64_t seed) const {
+    std::int64_t steps = 0;
+    if (!Annealing::is_selective(targets, start.prize)) return run(start, derive_seed(seed, 0), 0, 1, steps);
+    Stops best = start;
+    for (int i = 0; i < kShortRuns; ++i) {
+      const double first = kShortShare * i / kShortRuns;
+      Stops found = run(start, derive_seed(seed, 1, static_cast<std::uint64_t>(i)), first,
+                        first + kShortShare / kShortRuns, steps);
+      if (found.prize > best.prize) best = std::move(found);
+    }
+    return run(best, derive_seed(seed, 0), kShortShare, 1, steps);
+  }
+};
+
 }  // namespace
 
 std::int64_t default_iterations(int targets) {
@@ -71,82 +144,66 @@ std::int64_t default_iterations(int targets) {
 }
 
 Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  check(task);
   NearestPlanner nearest;
   Plan best = nearest.plan(task, deadline, report);
-  const auto consider = [&](Planner& planner, Deadline until) {
-    best = better_of(std::move(best), planner.plan(task, until, report));
-  };
   const Targets targets(task, deadline);
-  const double bound = std::min(max_prize(task, share_of(deadline, kBoundShare)), targets.total_prize());
-  const auto met_bound = [&](double prize) { return prize >= bound * (1 - kPrizeRounding); };
+  best.bound = std::min(max_prize(task, share_of(deadline, kBoundShare)), targets.total_prize());
+  best = best_start(task, targets, std::move(best), deadline, report);
+  if (!is_met(best.bound, best.prize) && targets.complete() && targets.end() > 1 && !passed(deadline)) {
+    best = improve(task, targets, std::move(best), deadline, report);
+  }
+  best.optimal = best.optimal || is_met(best.bound, best.prize);
+  return best;
+}
+
+// The best of all walks to begin with, the nearest rule's first.
+Plan LocalSearchPlanner::best_start(const Task& task, const Targets& targets, Plan best, Deadline deadline,
+                                    const Report& report) {
+  const double bound = best.bound;
   DepthFirstPlanner depth_first;
   BeamPlanner beam{BeamOptions()};
   const std::chrono::duration<double> explorer_time(kExplorerVisitS * targets.end());
-  for (Planner* const planner : {static_cast<Planner*>(&depth_first), static_cast<Planner*>(&beam), explorer_.get()}) {
-    if (met_bound(best.prize) || passed(deadline)) break;
+  for (Planner* const planner : std::initializer_list<Planner*>{&depth_first, &beam, explorer_.get()}) {
+    if (is_met(bound, best.prize) || passed(deadline)) break;
     const Deadline until = share_of(deadline, kStartShare);
     if (planner == explorer_.get() && until && steady_clock::now() + explorer_time > *until) continue;
-    consider(*planner, until);
-  }
-
-  if (targets.complete() && targets.end() > 1 && !met_bound(best.prize) && !passed(deadline)) {
-    const Stops stops = stops_of(task, targets, best.walk);
-    const int chains = deadline ? std::min(threads(), kMostThreads) : kChains;
-    const std::int64_t in_all = options_.iterations > 0 ? options_.iterations : default_iterations(targets.end());
-    const bool endless = deadline && options_.iterations == 0;
-    const std::int64_t steps = endless ? std::numeric_limits<std::int64_t>::max() : (in_all + chains - 1) / chains;
-    // What comes after the last step takes about as long as this.
-    const auto before = steady_clock::now();
-    walk_of(task, targets, stops.order);
-    const auto begin = steady_clock::now();
-    if (deadline) *deadline -= 2 * (begin - before);
-    const double time = deadline ? std::chrono::duration<double>(*deadline - begin).count() : 0;
-    const int before_walk = task.visited_before().count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
-    const auto caller = std::this_thread::get_id();
-    std::vector<Plan> found(chains);
-    const int starts = Annealing::is_selective(targets, best.prize) ? kStarts : 1;
-    parallel_for(chains, [&](int chain) {
-      Stops from = stops;
-      double prize = -1;
-      // Runs of one schedule each, the last one from the best of those before it.
-      for (int run = 0; run < starts; ++run) {
-        const bool last = run == starts - 1;
-        const double first_share = starts == 1 ? 0 : run * kStartsShare / (starts - 1);
-        const double last_share = last ? 1 : first_share + kStartsShare / (starts - 1);
-        const auto seed = static_cast<std::uint64_t>(chain * kStarts + run);
-        Annealing annealing(targets, task.limit(), derive_seed(options_.seed, 0, seed));
-        const Stops& start = last ? from : stops;
-        annealing.start(start.order, start.links);
-        const auto first_step = static_cast<std::int64_t>(first_share * static_cast<double>(steps));
-        const auto last_step = static_cast<std::int64_t>(last_share * static_cast<double>(steps));
-        double through = 0;
-        for (std::int64_t step = first_step; (endless || step < last_step) && !met_bound(annealing.best_prize()); ++step) {
-          if (step % kStepsPerLook == 0) {
-            const double elapsed =
-                deadline ? std::chrono::duration<double>(steady_clock::now() - begin).count() / time : 0;
-            if (elapsed >= last_share || passed(deadline)) break;
-            through = (elapsed - first_share) / (last_share - first_share);
-            if (report && std::this_thread::get_id() == caller) {
-              report({.visited = before_walk + annealing.best_visits(), .bound = bound});
-            }
-          }
-          const double stepped = endless ? 0 : static_cast<double>(step - first_step) / static_cast<double>(last_step - first_step);
-          annealing.step(std::clamp(std::max(through, stepped), 0.0, 1.0));
-        }
-        const std::vector<int>& order = annealing.best();
-        if (annealing.best_prize() <= prize) continue;
-        prize = annealing.best_prize();
-        from = {order, annealing.best_links()};
-      }
-      found[chain] = plan_of_walk(task, walk_of(task, targets, from.order));
-    });
-    for (Plan& plan : found) {
-      if (plan.cost <= task.limit()) best = better_of(std::move(best), std::move(plan));
-    }
+    best = better_of(std::move(best), planner->plan(task, until, report));
   }
   best.bound = bound;
-  best.optimal = best.optimal || met_bound(best.prize);
+  return best;
+}
+
+Plan LocalSearchPlanner::improve(const Task& task, const Targets& targets, Plan best, Deadline deadline,
+                                 const Report& report) {
+  const Stops start = stops_of(task, targets, best);
+  // What comes after the last step takes about as long as this.
+  const auto before = steady_clock::now();
+  walk_of(task, targets, start.order);
+  if (deadline) *deadline -= 2 * (steady_clock::now() - before);
+  const int chains = deadline ? threads() : kChains;
+  std::int64_t steps = options_.iterations;
+  if (steps == 0 && !deadline) steps = default_iterations(targets.end());
+  const CoolingSchedule schedule((steps + chains - 1) / chains, deadline);
+  const auto caller = std::this_thread::get_id();
+  const int visited = task.visited_before().count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
+  const Anneal anneal{.task = task,
+                      .targets = targets,
+                      .schedule = schedule,
+                      .bound = best.bound,
+                      .tell = [&](int visits) {
+                        if (!report || std::this_thread::get_id() != caller) return;
+                        report({.visited = visited + visits, .bound = best.bound});
+                      }};
+  std::vector<Plan> found(chains);
+  parallel_for(chains, [&](int chain) {
+    const Stops stops = anneal.chain(start, derive_seed(options_.seed, static_cast<std::uint64_t>(chain)));
+    found[chain] = plan_of_walk(task, walk_of(task, targets, stops.order));
+  });
+  const double bound = best.bound;
+  for (Plan& plan : found) {
+    if (plan.cost <= task.limit()) best = better_of(std::move(best), std::move(plan));
+  }
+  best.bound = bound;
   return best;
 }
 

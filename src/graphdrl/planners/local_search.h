@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "graphdrl/planners/plan.h"
+#include "graphdrl/planners/targets.h"
 
 namespace graphdrl {
 
@@ -32,6 +33,9 @@ class LocalSearchPlanner final : public Planner {
   bool bounds() const override { return true; }
 
  private:
+  Plan best_start(const Task& task, const Targets& targets, Plan best, Deadline deadline, const Report& report);
+  Plan improve(const Task& task, const Targets& targets, Plan best, Deadline deadline, const Report& report);
+
   LocalSearchOptions options_;
   std::unique_ptr<Planner> explorer_;
 };
