@@ -101,7 +101,9 @@ def ea4op(problem, _seconds, binary):
         lines += ["DEPOT_SECTION", "1", "-1", "EOF", ""]
         pathlib.Path(folder, "world.oplib").write_text("\n".join(lines))
         begin = time.perf_counter()
-        subprocess.run([binary, "opt", "--op-exact", "0", "world.oplib"], cwd=folder, check=True, capture_output=True)
+        command = [binary, "opt", "--op-exact", "0", "world.oplib"]
+        if subprocess.run(command, cwd=folder, check=False, capture_output=True).returncode != 0:
+            return None, 0  # it crashes on some worlds
         elapsed = time.perf_counter() - begin
         documents = pathlib.Path(folder, "stats.json").read_text()
     decoder, at, best = json.JSONDecoder(), 0, None
@@ -203,7 +205,7 @@ def main():
         parser.error("--share-of-ea4op needs ea4op as the first of --solvers")
     for family in arguments.worlds:
         name, size, *weighted = family.split("-weighted")[0].rsplit("-", 1) + ["weighted"] * ("-weighted" in family)
-        rows = []
+        rows, failed = [], []
         with tempfile.TemporaryDirectory() as folder:
             command = [arguments.graphdrl, "maps", "generate", name, "--size", size, "--split", arguments.split]
             command += ["--count", str(arguments.count), "--out", f"{folder}/worlds"] + ["--weighted"] * len(weighted)
@@ -212,12 +214,17 @@ def main():
                 told = ours(arguments.graphdrl, path, arguments.budget, "nearest", None)
                 valid = round(100 * told["visited"] / told["coverage"])
                 problem = Problem(Graph(path), told["start"], told["budget"])
-                row, seconds = {}, arguments.seconds
+                row, seconds, visited = {}, arguments.seconds, 0
                 for solver in arguments.solvers:
                     visited, elapsed = SOLVERS[solver](problem, seconds, arguments.ea4op)
+                    if visited is None:
+                        break
                     row[solver] = {"coverage": 100 * visited / valid, "seconds": elapsed}
                     if solver == "ea4op" and arguments.share_of_ea4op:
                         seconds = max(0.01, arguments.share_of_ea4op * elapsed)
+                if visited is None:
+                    failed.append(path.stem)
+                    continue
                 for policy in arguments.policies:
                     plan = ours(arguments.graphdrl, path, arguments.budget, policy, seconds)
                     row[policy] = {"coverage": plan["coverage"], "seconds": plan["elapsed_s"]}
@@ -228,9 +235,10 @@ def main():
         figures = [
             f"{who} {statistics.mean(row[who]['coverage'] for row in rows):.2f} "
             f"({statistics.mean(row[who]['seconds'] for row in rows):.3f} s)"
-            for who in rows[0]
+            for who in (rows[0] if rows else ())
         ]
-        print(f"{family}, {len(rows)} worlds: " + ", ".join(figures), flush=True)
+        without = f" (without {', '.join(failed)}, where a solver crashed)" if failed else ""
+        print(f"{family}, {len(rows)} worlds{without}: " + ", ".join(figures), flush=True)
 
 
 if __name__ == "__main__":

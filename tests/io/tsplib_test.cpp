@@ -58,8 +58,8 @@ TEST(Tsplib, ReadsAnOrienteeringProblem) {
 // Lengths of edges that TSPLIB's own instances have: burma14 from 1 to 2, att48 from 1 to 2 and from 1 to 3.
 TEST(Tsplib, ComputesTheDistancesOfTsplib) {
   const auto cost = [](const std::string& type, const std::string& one, const std::string& other) {
-    return parse("TYPE: TSP\nDIMENSION: 2\nEDGE_WEIGHT_TYPE: " + type + "\nNODE_COORD_SECTION\n1 " + one + "\n2 " + other +
-                 "\n")
+    return parse("TYPE: TSP\nDIMENSION: 2\nEDGE_WEIGHT_TYPE: " + type + "\nNODE_COORD_SECTION\n1 " + one + "\n2 " +
+                 other + "\n")
         .graph.cost(0, 0);
   };
   EXPECT_EQ(cost("GEO", "16.47 96.10", "16.47 94.44"), 153);

@@ -22,9 +22,8 @@ World family_world(const char* family, int size, bool weighted = false, bool dir
 }
 
 Task task_of(const World& world) {
-  return {.view = world,
-          .start = world.valid_nodes().front(),
-          .budget = world.valid_count() * world.open().mean_cost()};
+  return {
+      .view = world, .start = world.valid_nodes().front(), .budget = world.valid_count() * world.open().mean_cost()};
 }
 
 TEST(Targets, CostWhatTheCheapestWaysDo) {
@@ -110,7 +109,9 @@ TEST(Route, IsAListWhoseChangesCanBeUndone) {
   };
   Rng rng(5);
   std::vector<int> kept = list;
-  const auto below = [&](std::size_t bound) { return static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(bound))); };
+  const auto below = [&](std::size_t bound) {
+    return static_cast<std::ptrdiff_t>(rng.below(static_cast<std::uint32_t>(bound)));
+  };
   for (int i = 0; i < 5'000; ++i) {
     const int target = 1 + static_cast<int>(below(end - 1));
     const auto found = std::find(list.begin(), list.end(), target);

@@ -621,7 +621,8 @@ def test_search_is_the_default_and_never_below_the_explorer(run, tmp_path):
 
 def test_an_interrupted_plan_is_printed_whole(tmp_path):
     (tmp_path / "room.txt").write_text(("." * 60 + "\n" + ".#" * 30 + "\n") * 30)
-    command = [BIN / "graphdrl", "plan", tmp_path / "room.txt", "--budget", "0.7x", "--iterations", "1000000000", "--json"]
+    arguments = ["--budget", "0.7x", "--iterations", "1000000000", "--json"]
+    command = [BIN / "graphdrl", "plan", tmp_path / "room.txt", *arguments]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     time.sleep(3)
     process.send_signal(signal.SIGINT)

@@ -70,16 +70,22 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--maps", options->maps, "paper, paper:a to paper:j, a file, or a folder; may be given again")
       ->type_name("M")
       ->capture_default_str();
-  command->add_option("--budget", options->budget, "What an episode may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's, else 25")
+  command
+      ->add_option(
+          "--budget", options->budget,
+          "What an episode may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's, else 25")
       ->check(not_empty())
       ->type_name("B");
-  command->add_option("--end", options->comparison.end, "Where walks must end: anywhere, start, or a node. The default is the file's, else anywhere")
+  command
+      ->add_option("--end", options->comparison.end,
+                   "Where walks must end: anywhere, start, or a node. The default is the file's, else anywhere")
       ->check(not_empty())
       ->type_name("E");
-  CLI::Option* const episodes =
-      command->add_option("--episodes", options->comparison.episodes, "Episodes per map, from the file's start, else from random ones")
-          ->type_name("K")
-          ->capture_default_str();
+  CLI::Option* const episodes = command
+                                    ->add_option("--episodes", options->comparison.episodes,
+                                                 "Episodes per map, from the file's start, else from random ones")
+                                    ->type_name("K")
+                                    ->capture_default_str();
   command->add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
       ->excludes(episodes);
   add_seed_option(*command, options->comparison.seed, "For the starts and for random policies");

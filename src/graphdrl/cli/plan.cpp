@@ -269,10 +269,14 @@ void add_plan_command(CLI::App& app) {
   CLI::App* const command =
       app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
-  command->add_option("map", options->map, "paper:a to paper:j, or a file: an ASCII map, a graph as node-link JSON, or a problem of OPLib")
+  command
+      ->add_option("map", options->map,
+                   "paper:a to paper:j, or a file: an ASCII map, a graph as node-link JSON, or a problem of OPLib")
       ->required()
       ->type_name("MAP");
-  command->add_option("--budget", options->budget, "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's")
+  command
+      ->add_option("--budget", options->budget,
+                   "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's")
       ->check(not_empty())
       ->type_name("B");
   command
@@ -282,8 +286,10 @@ void add_plan_command(CLI::App& app) {
           "file's, else the first valid node")
       ->check(not_empty())
       ->type_name("S");
-  command->add_option("--end", options->end, "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, "
-                  "else anywhere")
+  command
+      ->add_option("--end", options->end,
+                   "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, "
+                   "else anywhere")
       ->check(not_empty())
       ->type_name("E");
   command->add_option("--policy", options->policy, policy_names())->type_name("P")->capture_default_str();
@@ -292,10 +298,10 @@ void add_plan_command(CLI::App& app) {
                    "Of search: how many steps to take in all; the default depends on the size of the world")
       ->type_name("N");
   command
-      ->add_option(
-          "--time-limit", options->time_limit_s,
-          "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, others stop "
-          "with what they have")
+      ->add_option("--time-limit", options->time_limit_s,
+                   "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, "
+                   "others stop "
+                   "with what they have")
       ->type_name("S");
   add_seed_option(*command, options->seed, "For search and for random policies");
   command->add_flag("--json", options->json, "Print one JSON document");

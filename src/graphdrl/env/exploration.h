@@ -11,7 +11,7 @@ struct ExplorationState {
   NodeSetView visited;
   int visited_count;
   NodeId position;
-  double spendable;                    // in units of cost
+  double spendable;                   // in units of cost
   const CostToEnd* to_end = nullptr;  // null where it may end anywhere
 
   double cost_to_end(NodeId node) const { return to_end == nullptr ? 0 : (*to_end)(node); }

@@ -27,8 +27,8 @@ struct ComparisonOptions {
   std::vector<std::string> policies;  // as make_policy takes them
   std::optional<Budget> budget = {};  // the default is the map's own, else kPaperBudget
   std::string end = {};               // as parse_end() takes it; the default is the map's own, else anywhere
-  int episodes = 30;        // per map, from its own start, else random ones, the same for every policy
-  bool all_starts = false;  // instead: every valid node once
+  int episodes = 30;                  // per map, from its own start, else random ones, the same for every policy
+  bool all_starts = false;            // instead: every valid node once
   std::uint64_t seed = 1;
 };
 

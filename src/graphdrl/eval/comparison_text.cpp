@@ -50,7 +50,8 @@ std::string budgets_of(const Comparison& comparison) {
 std::string format_comparison(const Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
   std::string text = fmt::format(
-      "Coverage of the valid nodes in %, budget {}, {}\n\n", options.budget ? options.budget->text() : budgets_of(comparison),
+      "Coverage of the valid nodes in %, budget {}, {}\n\n",
+      options.budget ? options.budget->text() : budgets_of(comparison),
       options.all_starts ? "every start once"
                          : fmt::format("{} episodes per map, random starts (seed {})", options.episodes, options.seed));
   std::size_t name_width = 11;

@@ -101,11 +101,11 @@ class Graph {
   void settle_costs();
 
   EdgeKind kind_ = EdgeKind::kUndirected;
-  std::vector<std::int64_t> offsets_ = {0};  // [N + 1]
-  std::vector<NodeId> neighbours_;           // [2E], or [E] of a directed graph; [2N] of a complete one
-  std::int64_t overlap_ = 0;                 // how far each list reaches into the next: N - 2 in a complete graph
-  std::shared_ptr<const PairCosts> pair_costs_;     // of a complete graph
-  std::vector<double> costs_;                // as neighbours_; empty where every edge costs 1
+  std::vector<std::int64_t> offsets_ = {0};      // [N + 1]
+  std::vector<NodeId> neighbours_;               // [2E], or [E] of a directed graph; [2N] of a complete one
+  std::int64_t overlap_ = 0;                     // how far each list reaches into the next: N - 2 in a complete graph
+  std::shared_ptr<const PairCosts> pair_costs_;  // of a complete graph
+  std::vector<double> costs_;                    // as neighbours_; empty where every edge costs 1
   double min_cost_ = 1;
   double max_cost_ = 1;
   double mean_cost_ = 1;

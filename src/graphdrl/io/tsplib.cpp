@@ -144,7 +144,8 @@ class Reader {
       return true;
     }
     const std::string_view value = value_of_line();
-    if (!header_.try_emplace(keyword, value).second && keyword != "COMMENT") fail(fmt::format("{} comes twice", keyword));
+    if (!header_.try_emplace(keyword, value).second && keyword != "COMMENT")
+      fail(fmt::format("{} comes twice", keyword));
     if (keyword == "DIMENSION") {
       const double count = to_number(value, keyword);
       if (!(count >= 1 && count <= kMostNodes && count == std::floor(count))) {

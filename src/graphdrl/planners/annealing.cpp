@@ -10,14 +10,14 @@ namespace {
 constexpr double kPrice = 0.6;  // of a share of the budget, in shares of the prize
 constexpr double kLastTemperature = 0.08;
 constexpr int kMostStrings = 2;
-constexpr int kShort = 5;  // how long a string is at most, mostly
-constexpr int kLong = 40;  // and sometimes: a branch of a maze or of a tree
-constexpr double kBlink = 0.03;     // of places passed over
+constexpr int kShort = 5;        // how long a string is at most, mostly
+constexpr int kLong = 40;        // and sometimes: a branch of a maze or of a tree
+constexpr double kBlink = 0.03;  // of places passed over
 constexpr int kTwoOptNear = 10;
 constexpr int kTurnNear = 5;
 constexpr int kTurnTries = 4;
-constexpr int kLooks = 256;  // at most one copy of the best route in T / kLooks steps
-constexpr int kGrownNear = 10;   // of a target that a region grows from
+constexpr int kLooks = 256;       // at most one copy of the best route in T / kLooks steps
+constexpr int kGrownNear = 10;    // of a target that a region grows from
 constexpr int kMostFailures = 5;  // to put a target into a region, and it grows no more
 constexpr int kSeedTries = 20;
 constexpr double kRounding = 1e-9;
@@ -257,7 +257,8 @@ Annealing::Place Annealing::cheapest_place(int target) {
     }
   } else {
     for (const int near : targets_->into(target)) {
-      if (route_.contains(near)) consider(near, targets_->cost(near, target), targets_->cost(target, route_.next(near)));
+      if (route_.contains(near))
+        consider(near, targets_->cost(near, target), targets_->cost(target, route_.next(near)));
     }
     for (const int near : targets_->near(target)) {
       if (near == 0 || !route_.contains(near)) continue;

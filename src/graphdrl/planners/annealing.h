@@ -72,9 +72,9 @@ class Annealing {
   Rng rng_;
   Style style_;
   Route route_;
-  double unit_;   // the mean prize: temperatures are in it
-  double price_;  // of a unit of cost
-  std::vector<int> out_;  // taken out, or near what was
+  double unit_;             // the mean prize: temperatures are in it
+  double price_;            // of a unit of cost
+  std::vector<int> out_;    // taken out, or near what was
   std::vector<int> grown_;  // a region, from its seed on
   std::vector<int> queue_;
   std::vector<int> loose_;  // targets whose way on may cost less than is known

@@ -31,7 +31,8 @@ class RandomWalkPolicy final : public Policy {
 
 // Descends to the first unvisited neighbour in the graph's order, and steps back where there is none; in a directed
 // graph it walks to the node entered last from which something is left. Ends with its last first visit, and where the
-// next step cannot be paid for with the way to the end. Does not look at prizes. Cost: O(nodes + edges), in directed graphs O(nodes in reach) for every way back.
+// next step cannot be paid for with the way to the end. Does not look at prizes. Cost: O(nodes + edges), in directed
+// graphs O(nodes in reach) for every way back.
 class DepthFirstPlanner final : public Planner {
  public:
   Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
@@ -41,7 +42,8 @@ class DepthFirstPlanner final : public Planner {
 };
 
 // Walks the cheapest way to the nearest unvisited node that is worth something, the first one that the search meets,
-// until none can be had for what is left with the way to the end. Cost: the sum over first visits of what is nearer than they are.
+// until none can be had for what is left with the way to the end. Cost: the sum over first visits of what is nearer
+// than they are.
 class NearestPlanner final : public Planner {
  public:
   Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;

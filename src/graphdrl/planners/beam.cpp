@@ -80,7 +80,7 @@ class Beam {
   CostToEnd to_end_;
   double limit_;
   double unit_;
-  double worth_ = 0;       // of a unit of prize, in units of cost
+  double worth_ = 0;  // of a unit of prize, in units of cost
   double mean_prize_ = 1;
   double most_prize_ = 0;  // of one node
   int width_;
@@ -158,7 +158,8 @@ void Beam::note_best() {
   const auto level_best = std::min_element(level_.begin(), level_.end(), [&](const Partial& a, const Partial& b) {
     return a.prize != b.prize ? a.prize > b.prize : cost(a) < cost(b);
   });
-  const bool better = level_best->prize != best_.prize ? level_best->prize > best_.prize : cost(*level_best) < cost(best_);
+  const bool better =
+      level_best->prize != best_.prize ? level_best->prize > best_.prize : cost(*level_best) < cost(best_);
   if (!view_.has_prizes() || better) best_ = *level_best;
 }
 
@@ -178,7 +179,7 @@ bool Beam::expand_level(Ticker& ticker) {
     first = end;
     if (ticker.tick(visited_, kExpansionsPerTick)) return false;
   }
-  // What lies next to the walks' ends shows how little of what lies farther can be kept.
+  // First the visits that cost 1: they tighten the bounds that end the searches below.
   if (!view_.open().weighted()) {
     for (int parent = scored; parent < count; ++parent) {
       const int degree = view_.open().degree(level_[parent].position);
@@ -240,7 +241,7 @@ void Beam::consider(int parent, const NodeSetView& visited, NodeId node, double 
                    .visited_hash = from.hash ^ spread(node)});
 }
 
-// The part of expand() that costs 1. REQUIRES: every edge does.
+// Makes the candidates of expand() that cost 1. REQUIRES: every edge does.
 void Beam::expand_one_step(int parent) {
   const Partial& from = level_[parent];
   if (from.spent + 1 > limit_) return;
@@ -258,7 +259,7 @@ void Beam::expand(int parent) {
   using Next = NearestFirst::Next;
   const Partial& from = level_[parent];
   const NodeSetView visited = visited_sets_[parent];
-  const double known_cost = view_.open().weighted() ? -1 : 1;  // what costs as much was considered before
+  const double considered_cost = view_.open().weighted() ? -1 : 1;  // what costs as much was considered before
   int branches = 0;
   double last_cost = 0;
   candidates_.begin_parent(parent);
@@ -277,7 +278,7 @@ void Beam::expand(int parent) {
     }
     ++branches;
     last_cost = cost;
-    if (cost == known_cost) return Next::kPast;
+    if (cost == considered_cost) return Next::kPast;
     consider(parent, visited, node, cost);
     most_useful = most_useful_cost(from);
     return Next::kPast;

@@ -20,12 +20,12 @@ inline constexpr int kTiesPerBranch = 4;
 inline constexpr int kMaxBeamWidth = 1'000'000;
 inline constexpr double kMaxBeamBytes = 4e9;
 
-// The best walk found; it ends with its last first visit, or goes on to where it must end. Of walks that visit as many nodes, the cheapest. Each level
-// keeps a third by each of three rankings, since none works everywhere: what was spent and all, a quarter or none of
-// the penalties for what is left over. A scorer's word takes the place of the last one; it scores the first visits of
-// ⌈¾ √width⌉ partial walks of a level: two thirds of those its own best, a third the best by all penalties. First
-// visits that it did not score come behind in its ranking, the cheapest first. A width of one keeps by the first
-// ranking only.
+// The best walk found; it ends with its last first visit, or goes on to where it must end. Of walks that visit as many
+// nodes, the cheapest. Each level keeps a third by each of three rankings, since none works everywhere: what was spent
+// and all, a quarter or none of the penalties for what is left over. A scorer's word takes the place of the last one;
+// it scores the first visits of ⌈¾ √width⌉ partial walks of a level: two thirds of those its own best, a third the best
+// by all penalties. First visits that it did not score come behind in its ranking, the cheapest first. A width of one
+// keeps by the first ranking only.
 //
 // Optimal where no partial walk had to be dropped and no first visit was left out. Deterministic. Once the deadline
 // passes, the best partial walk. Cost: a level looks at what is near its partial walks and may still be kept.

@@ -72,8 +72,8 @@ void BestStates::add(const Candidate& candidate) {
 
 void BestStates::note(const Candidate& candidate) {
   for (std::size_t i = 0; i < kRankings; ++i) {
-    std::vector<Place>& heap = best_[i];
-    const Place place{candidate.rankings[i], candidate.parent};
+    std::vector<Standing>& heap = best_[i];
+    const Standing place{candidate.rankings[i], candidate.parent};
     if (heap.size() == shares_[i]) {
       if (!(place < heap.front())) continue;
       std::pop_heap(heap.begin(), heap.end());

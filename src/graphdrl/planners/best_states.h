@@ -25,8 +25,8 @@ struct Candidate {
 // With room to grow, and up to four slots of the table of states.
 inline constexpr double kCandidateBytes = 2 * sizeof(Candidate) + 96;
 
-// Candidates of different states (visited set and position). Of two that lead to one state the cheaper stays, with the
-// better of their first rankings.
+// Candidates of different states (visited set and position). Of two that lead to one state the cheaper stays, of two as
+// cheap the one of the lower parent, with the better of their first rankings.
 class BestStates {
  public:
   // width: how many will be kept at most.
@@ -56,11 +56,11 @@ class BestStates {
 
  private:
   static constexpr std::size_t kLeastSlots = 64;
-  // By which candidates are kept.
-  struct Place {
+  // What candidates are ordered by; node ids break ties later.
+  struct Standing {
     double ranking;
     int parent;
-    bool operator<(const Place& other) const {
+    bool operator<(const Standing& other) const {
       return ranking != other.ranking ? ranking < other.ranking : parent < other.parent;
     }
   };
@@ -81,7 +81,7 @@ class BestStates {
   std::uint32_t generation_ = 0;
   // How many are kept by each ranking and those before it, and heaps of as many of the best by it, the worst on top.
   std::array<std::size_t, kRankings> shares_;
-  std::array<std::vector<Place>, kRankings> best_;
+  std::array<std::vector<Standing>, kRankings> best_;
   int parent_ = 0;
   Rankings worst_useful_{};
 };

@@ -12,7 +12,7 @@ class GeneralSearch {
  public:
   explicit GeneralSearch(const Task& task, Deadline deadline = {});
 
-  // The best walk; empty where it is out of world, or late.
+  // The best walk; empty where it is out of reach, or late.
   std::optional<std::vector<NodeId>> walk();
 
  private:

@@ -71,7 +71,8 @@ std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch,
   const double mean_prize = view.total_prize() / view.valid_count();
   for (std::size_t i = 0; i < visits.size(); ++i) {
     shortfall_[i] += static_cast<float>(worth * visits[i].cost / unit);
-    if (view.has_prizes() && mean_prize > 0) shortfall_[i] -= static_cast<float>(view.prize(visits[i].node) / mean_prize);
+    if (view.has_prizes() && mean_prize > 0)
+      shortfall_[i] -= static_cast<float>(view.prize(visits[i].node) / mean_prize);
   }
   const double most = *std::min_element(shortfall_.begin(), shortfall_.end()) + kIndifference * unseen * unseen;
   const auto choice = std::find_if(shortfall_.begin(), shortfall_.end(), [&](float score) { return score <= most; });

@@ -42,11 +42,11 @@ class ExplorerScorer final : public FirstVisitScorer {
   void shortfalls(const ExplorerBatch& batch, std::vector<float>& shortfall);
 
   // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. A score is the
-  // shortfall, less the prize in mean prizes where there are prizes, and for every mean edge of the first visit's cost 0.5 u nodes, with a share u of the work out of scope,
-  // and 0.1 (b - 1.2) nodes, 0 to 1, with b mean edges left for each unvisited node. The nearest whose score is within
-  // 0.4 u² of the least: the one of the least shortfall where all the work is in scope and the budget is short. In
-  // worlds much larger than the scope, and with budget to spare, which the network would waste, this visits several
-  // points more than the shortfall alone (docs/explorer.md).
+  // shortfall, less the prize in mean prizes where there are prizes, and for every mean edge of the first visit's cost
+  // 0.5 u nodes, with a share u of the work out of scope, and 0.1 (b - 1.2) nodes, 0 to 1, with b mean edges left for
+  // each unvisited node. The nearest whose score is within 0.4 u² of the least: the one of the least shortfall where
+  // all the work is in scope and the budget is short. In worlds much larger than the scope, and with budget to spare,
+  // which the network would waste, this visits several points more than the shortfall alone (docs/explorer.md).
   std::size_t choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
 
   ExplorerEncoder& encoder() { return encoder_; }

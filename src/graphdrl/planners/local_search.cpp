@@ -15,13 +15,13 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr int kChains = 2;           // without a deadline, whatever the number of threads
-constexpr double kStartShare = 0.05;  // of the time left, for each walk to start with but the first two
+constexpr int kChains = 2;                  // without a deadline, whatever the number of threads
+constexpr double kStartShare = 0.05;        // of the time left, for each walk to start with but the first two
 constexpr double kExplorerVisitS = 0.4e-3;  // a first visit of the explorer: it is not begun where it would not end
 constexpr double kBoundShare = 0.05;
 constexpr int kShortRuns = 8;        // where the choice matters, before a long one from the best of them
 constexpr double kShortShare = 0.6;  // of the schedule, for all short ones
-constexpr int kStepsPerLook = 16;  // at the clock; a step takes some microseconds
+constexpr int kStepsPerLook = 16;    // at the clock; a step takes some microseconds
 
 Deadline share_of(Deadline deadline, double share) {
   if (!deadline) return std::nullopt;
@@ -186,14 +186,11 @@ Plan LocalSearchPlanner::improve(const Task& task, const Targets& targets, Plan 
   const CoolingSchedule schedule((steps + chains - 1) / chains, deadline);
   const auto caller = std::this_thread::get_id();
   const int visited = task.visited_before().count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
-  const Anneal anneal{.task = task,
-                      .targets = targets,
-                      .schedule = schedule,
-                      .bound = best.bound,
-                      .tell = [&](int visits) {
-                        if (!report || std::this_thread::get_id() != caller) return;
-                        report({.visited = visited + visits, .bound = best.bound});
-                      }};
+  const Anneal anneal{
+      .task = task, .targets = targets, .schedule = schedule, .bound = best.bound, .tell = [&](int visits) {
+        if (!report || std::this_thread::get_id() != caller) return;
+        report({.visited = visited + visits, .bound = best.bound});
+      }};
   std::vector<Plan> found(chains);
   parallel_for(chains, [&](int chain) {
     const Stops stops = anneal.chain(start, derive_seed(options_.seed, static_cast<std::uint64_t>(chain)));

@@ -68,9 +68,8 @@ std::vector<NodeId> walk_through(const Task& task, std::span<const NodeId> first
 
 void append_way_to(const View& view, NodeId node, std::vector<NodeId>& walk, NearestFirst& search) {
   if (walk.back() == node) return;
-  search.run(view.open(), walk.back(), kNoLimit, [&](NodeId met, double) {
-    return met == node ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
-  });
+  search.run(view.open(), walk.back(), kNoLimit,
+             [&](NodeId met, double) { return met == node ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough; });
   search.append_path_to(node, walk);
 }
 

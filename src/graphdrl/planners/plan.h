@@ -81,7 +81,7 @@ void append_way_to_end(const Task& task, std::vector<NodeId>& walk, NearestFirst
 // Looks at the clock once in `every` units of work, and reports to whoever listens.
 class Ticker {
  public:
-  static constexpr int kNodesPerUnit = 64;  // met in a search: as much work as the unit that asked for it
+  static constexpr int kNodesPerUnit = 64;  // nodes met in a search that take as long as one unit
 
   Ticker(Deadline deadline, const Report& report, int every) : deadline_(deadline), report_(&report), every_(every) {}
 

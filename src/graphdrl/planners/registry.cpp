@@ -139,8 +139,8 @@ std::string policy_names() {
 }
 
 std::string policy_label(const std::string& name) {
-  const bool known = planners().contains(name) || random_policies().contains(name) || parse_beam_name(name) ||
-                     parse_search_name(name);
+  const bool known =
+      planners().contains(name) || random_policies().contains(name) || parse_beam_name(name) || parse_search_name(name);
   return known ? name : std::filesystem::path(name).stem().string();
 }
 

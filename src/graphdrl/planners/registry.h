@@ -11,9 +11,10 @@
 
 namespace graphdrl {
 
-// Planners and policies: `search`, `search:ITERATIONS`, `dfs`, `nearest`, `explorer`, `beam` or `beam:W`, `guided`, `guided:W` or `guided:W:FILE`,
-// `exact`, and explorers in policy files, plan whole walks; `random`, `random-walk` and the paper's networks in policy
-// files choose step by step. Throw Error on any other name, and on a file that holds no policy.
+// Planners and policies: `search`, `search:ITERATIONS`, `dfs`, `nearest`, `explorer`, `beam` or `beam:W`, `guided`,
+// `guided:W` or `guided:W:FILE`, `exact`, and explorers in policy files, plan whole walks; `random`, `random-walk` and
+// the paper's networks in policy files choose step by step. Throw Error on any other name, and on a file that holds no
+// policy.
 //
 // make_planner: null where the name is of one that chooses step by step. seed: of `search`.
 std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed = 1);

@@ -83,7 +83,8 @@ void Route::put(int target, int after, double in, double out) {
   prize_ += targets_->prize(target);
   before.next = target;
   before.link = in;
-  stop = {.next = next, .previous = after, .link = out, .label = before.label + (stops_[next].label - before.label) / 2};
+  stop = {
+      .next = next, .previous = after, .link = out, .label = before.label + (stops_[next].label - before.label) / 2};
   stops_[next].previous = target;
   if (stop.label == before.label) renumber();
 }

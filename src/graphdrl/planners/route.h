@@ -64,9 +64,9 @@ class Route {
   enum class Kind { kInserted, kRemoved, kReversed, kRelinked };
   struct Change {
     Kind kind;
-    int target;    // the first after a reversal
-    int other;     // it stood after this one; the last after a reversal
-    double in;     // ways as they were; `in` alone, of the way on, where that was relinked
+    int target;  // the first after a reversal
+    int other;   // it stood after this one; the last after a reversal
+    double in;   // ways as they were; `in` alone, of the way on, where that was relinked
     double out;
   };
 

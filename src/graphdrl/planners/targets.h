@@ -31,9 +31,7 @@ class Targets {
 
   // The nearest targets, and those it is nearest from, which are the same where edges lead both ways. Nearest first.
   std::span<const int> near(int target) const { return list(near_, near_begin_, target); }
-  std::span<const int> into(int target) const {
-    return symmetric() ? near(target) : list(into_, into_begin_, target);
-  }
+  std::span<const int> into(int target) const { return symmetric() ? near(target) : list(into_, into_begin_, target); }
 
   // From a target other than the end to another; kNoLimit where it is not known, or where there is no way.
   double cost(int from, int to) const {
@@ -56,16 +54,16 @@ class Targets {
                  std::vector<double>* costs, Deadline deadline);
 
   View view_;
-  std::vector<NodeId> nodes_;     // [T]
-  std::vector<int> numbers_;      // [N]
-  std::vector<double> prizes_;    // [T + 1]
-  std::vector<double> to_end_;    // [T]
-  std::vector<int> near_;         // [T, at most kNearest]
-  std::vector<double> near_cost_; // as near_; without a table only
+  std::vector<NodeId> nodes_;             // [T]
+  std::vector<int> numbers_;              // [N]
+  std::vector<double> prizes_;            // [T + 1]
+  std::vector<double> to_end_;            // [T]
+  std::vector<int> near_;                 // [T, at most kNearest]
+  std::vector<double> near_cost_;         // as near_; without a table only
   std::vector<std::int64_t> near_begin_;  // [T + 1]
-  std::vector<int> into_;         // likewise, of directed graphs
+  std::vector<int> into_;                 // likewise, of directed graphs
   std::vector<std::int64_t> into_begin_;
-  std::vector<double> table_;     // [T, T + 1], or empty
+  std::vector<double> table_;  // [T, T + 1], or empty
   double total_prize_ = 0;
   bool complete_ = true;
 };
