@@ -81,9 +81,9 @@ class MatrixCosts final : public PairCosts {
   std::vector<double> costs_;  // [N, N]
 };
 
-class Reader {
+class TsplibReader {
  public:
-  Reader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  TsplibReader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
   GraphMap read() {
     while (skip_space() && read_entry()) {
@@ -273,7 +273,7 @@ bool is_tsplib(std::string_view text) {
 }
 
 GraphMap parse_tsplib(std::string_view text, const std::string& source) {
-  return Reader(text, source).read();
+  return TsplibReader(text, source).read();
 }
 
 }  // namespace graphdrl
