@@ -206,17 +206,17 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
   return text;
 }
 
-volatile std::sig_atomic_t stop_signal = 0;
+volatile std::sig_atomic_t plan_signal = 0;
 
-extern "C" void stop_on_signal(int signal) {
-  stop_signal = signal;
+extern "C" void remember_plan_signal(int signal) {
+  plan_signal = signal;
   stop_planning();
 }
 
 // The first signal ends the planning, and the best walk so far is printed; the second one ends the program.
-void catch_signals() {
+void stop_planning_on_signals() {
   struct sigaction action {};
-  action.sa_handler = stop_on_signal;
+  action.sa_handler = remember_plan_signal;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
@@ -253,14 +253,14 @@ void plan(PlanOptions options) {
   }
   const World world = load_one_world(options.map);
   const Task task = task_of(world, options);
-  catch_signals();
+  stop_planning_on_signals();
   const Answer answer = make_plan(world, task, options);
   if (options.json) {
     print_json(to_json(world, task, options, answer));
   } else {
     print_text(format_plan(world, task, options, answer));
   }
-  if (stop_signal != 0) throw CLI::RuntimeError(128 + stop_signal);
+  if (plan_signal != 0) throw CLI::RuntimeError(128 + plan_signal);
 }
 
 }  // namespace
