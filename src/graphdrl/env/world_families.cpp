@@ -20,12 +20,16 @@ constexpr double kMaxBlocked = 0.9;
 constexpr int kMostCost = 5;
 constexpr double kOneWayShare = 0.3;
 
-constexpr std::array<WorldFamily, 10> kFamilies = {{
+constexpr std::array<WorldFamily, 14> kFamilies = {{
     {"obstacles", true, "each cell an obstacle with a probability from 0.1 to 0.4, half the cells free at least"},
     {"maze", true, "perfect mazes, corridors one cell wide; odd sides"},
     {"loop-maze", true, "mazes, each inner wall between two rooms opened with a probability from 0.05 to 0.2"},
     {"braided-maze", true, "mazes, each dead end opened with a probability from 0.3 to 1"},
     {"rooms", true, "rooms of 2 to 4 cells a side, joined by corridors"},
+    {"open", true, "empty: this side by one from 2 to it"},
+    {"caves", true, "each cell rock with a probability from 0.4 to 0.5, smoothed; a fifth of the cells free at least"},
+    {"houses", true, "rooms of at most 3 to 8 cells a side, doors, furniture on up to a quarter; 0.4 of the cells free at least"},
+    {"streets", true, "1 to 3 cells wide, between blocks of at most 2 to 7 a side, up to 0.4 of them squares"},
     {"tree", false, "drawn uniformly from all trees"},
     {"erdos-renyi", false, "mean degree from 2.5 to 4, the largest part"},
     {"barabasi-albert", false, "each node joins by 1 or 2 edges"},
@@ -35,6 +39,20 @@ constexpr std::array<WorldFamily, 10> kFamilies = {{
 
 double draw(double low, double high, Rng& rng) {
   return low + (high - low) * rng.uniform();
+}
+
+int draw_int(int low, int high, Rng& rng) {
+  return low + static_cast<int>(rng.below(static_cast<std::uint32_t>(high - low + 1)));
+}
+
+// Draws maps until a share of the cells is free.
+template <typename Draw>
+GridMap with_free_share(double share, const Draw& draw_map) {
+  for (;;) {
+    GridMap drawn = draw_map();
+    const auto free = static_cast<double>(std::count(drawn.blocked.begin(), drawn.blocked.end(), false));
+    if (free >= share * drawn.rows * drawn.cols) return drawn;
+  }
 }
 
 World grid_world_of(const WorldSpec& spec, Rng& rng) {
@@ -51,6 +69,24 @@ World grid_world_of(const WorldSpec& spec, Rng& rng) {
     if (spec.family == "maze") return maze_map(side, side, 0, rng);
     if (spec.family == "loop-maze") return maze_map(side, side, draw(0.05, 0.2, rng), rng);
     if (spec.family == "braided-maze") return braided_maze_map(side, side, draw(0.3, 1, rng), rng);
+    if (spec.family == "open") {
+      int rows = side;
+      int cols = draw_int(2, side, rng);
+      if (rng.below(2) == 0) std::swap(rows, cols);
+      return {.rows = rows, .cols = cols, .blocked = std::vector<bool>(static_cast<std::size_t>(rows) * cols)};
+    }
+    if (spec.family == "caves") {
+      return with_free_share(0.2, [&] { return caves_map(side, side, draw(0.4, 0.5, rng), rng); });
+    }
+    if (spec.family == "houses") {
+      return with_free_share(0.4, [&] { return house_map(side, side, draw_int(3, 8, rng), draw(0, 0.25, rng), rng); });
+    }
+    if (spec.family == "streets") {
+      return with_free_share(0.2, [&] {
+        const int block = draw_int(2, 7, rng);
+        return streets_map(side, side, draw_int(1, 3, rng), block, draw(0, 0.4, rng), rng);
+      });
+    }
     return rooms_map(side, side, 4, rng);
   };
   return World(spec.name(), map());

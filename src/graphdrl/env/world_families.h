@@ -18,7 +18,8 @@ struct WorldFamily {
   std::string_view description;  // with the parameters' ranges
 };
 
-// obstacles, maze, loop-maze, braided-maze, rooms, tree, erdos-renyi, barabasi-albert, watts-strogatz, geometric
+// obstacles, maze, loop-maze, braided-maze, rooms, open, caves, houses, streets, tree, erdos-renyi, barabasi-albert,
+// watts-strogatz, geometric
 std::span<const WorldFamily> world_families();
 
 struct WorldSpec {

@@ -91,6 +91,83 @@ void sort_by_strips(std::vector<Cell>& cells, int strip_rows) {
   });
 }
 
+struct Rectangle {
+  int top;
+  int left;
+  int height;
+  int width;
+};
+
+// Splits a rectangle in two along its longer side, and leaves a strip of some cells between them. The strip, and what is
+// on either side of it. REQUIRES: the longer side has at least thickness + 2 cells.
+std::array<Rectangle, 3> split(const Rectangle& whole, int thickness, Rng& rng) {
+  const bool across = whole.height > whole.width || (whole.height == whole.width && rng.below(2) == 0);
+  const int length = across ? whole.height : whole.width;
+  const int before = 1 + static_cast<int>(rng.below(static_cast<std::uint32_t>(length - thickness - 1)));
+  const auto part = [&](int from, int size) {
+    return across ? Rectangle{whole.top + from, whole.left, size, whole.width}
+                  : Rectangle{whole.top, whole.left + from, whole.height, size};
+  };
+  return {part(before, thickness), part(0, before), part(before + thickness, length - before - thickness)};
+}
+
+void fill(GridMap& map, const Rectangle& rectangle, bool blocked) {
+  for (int row = rectangle.top; row < rectangle.top + rectangle.height; ++row) {
+    for (int col = rectangle.left; col < rectangle.left + rectangle.width; ++col) {
+      map.blocked[map.node({row, col})] = blocked;
+    }
+  }
+}
+
+// Whether more than half of a cell and those around it are blocked.
+bool mostly_blocked(const GridMap& map, Cell cell) {
+  int cells = 0;
+  int blocked = 0;
+  for (int row = std::max(cell.row - 1, 0); row <= std::min(cell.row + 1, map.rows - 1); ++row) {
+    for (int col = std::max(cell.col - 1, 0); col <= std::min(cell.col + 1, map.cols - 1); ++col) {
+      ++cells;
+      blocked += map.blocked[map.node({row, col})];
+    }
+  }
+  return 2 * blocked > cells;
+}
+
+// Walls, with doors where they stand between free cells, in a rectangle and in its parts.
+void build_walls(GridMap& map, const Rectangle& whole, int max_room, Rng& rng) {
+  if (std::max(whole.height, whole.width) <= std::max(max_room, 2)) return;
+  const auto [wall, one, other] = split(whole, 1, rng);
+  build_walls(map, one, max_room, rng);
+  build_walls(map, other, max_room, rng);
+  fill(map, wall, true);
+  const bool across = one.top != wall.top;
+  std::vector<Cell> places;
+  for (int row = wall.top; row < wall.top + wall.height; ++row) {
+    for (int col = wall.left; col < wall.left + wall.width; ++col) {
+      const Cell before = across ? Cell{row - 1, col} : Cell{row, col - 1};
+      const Cell after = across ? Cell{row + 1, col} : Cell{row, col + 1};
+      if (!map.blocked[map.node(before)] && !map.blocked[map.node(after)]) places.push_back({row, col});
+    }
+  }
+  const std::uint32_t doors = places.empty() ? 0 : 1 + rng.below(2);
+  for (std::uint32_t i = 0; i < doors; ++i) {
+    map.blocked[map.node(places[rng.below(static_cast<std::uint32_t>(places.size()))])] = false;
+  }
+}
+
+// Frees the streets of a rectangle and of its parts; the blocks between them are free where they are squares.
+void build_streets(GridMap& map, const Rectangle& whole, int max_street, int max_block, double squares, Rng& rng) {
+  const int longer = std::max(whole.height, whole.width);
+  if (longer <= max_block || longer < 3) {
+    fill(map, whole, !(rng.uniform() < squares));
+    return;
+  }
+  const int width = 1 + static_cast<int>(rng.below(static_cast<std::uint32_t>(std::min(max_street, longer - 2))));
+  const auto [street, one, other] = split(whole, width, rng);
+  fill(map, street, false);
+  build_streets(map, one, max_street, max_block, squares, rng);
+  build_streets(map, other, max_street, max_block, squares, rng);
+}
+
 }  // namespace
 
 GridMap largest_component(const GridMap& map) {
@@ -157,6 +234,48 @@ GridMap rooms_map(int rows, int cols, int max_room, Rng& rng) {
   sort_by_strips(centres, 2 * max_room);
   for (std::size_t i = 1; i < centres.size(); ++i) dig_corridor(map, centres[i - 1], centres[i], rng);
   return map;
+}
+
+GridMap caves_map(int rows, int cols, double rock, Rng& rng) {
+  constexpr int kSmoothings = 4;
+  GridMap map = blocked_map(rows, cols);
+  for (std::size_t i = 0; i < map.blocked.size(); ++i) map.blocked[i] = rng.uniform() < rock;
+  for (int i = 0; i < kSmoothings; ++i) {
+    GridMap smooth = map;
+    for (int row = 0; row < rows; ++row) {
+      for (int col = 0; col < cols; ++col) smooth.blocked[map.node({row, col})] = mostly_blocked(map, {row, col});
+    }
+    map = std::move(smooth);
+  }
+  return largest_component(map);
+}
+
+GridMap house_map(int rows, int cols, int max_room, double furniture, Rng& rng) {
+  GridMap map = blocked_map(rows, cols);
+  fill(map, {0, 0, rows, cols}, false);
+  build_walls(map, {0, 0, rows, cols}, max_room, rng);
+  const auto floor = static_cast<double>(std::count(map.blocked.begin(), map.blocked.end(), false));
+  double taken = 0;
+  for (double tries = floor; tries > 0 && taken < furniture * floor; --tries) {
+    const auto below = [&](int count) { return static_cast<int>(rng.below(static_cast<std::uint32_t>(count))); };
+    const int height = std::min(rows, 1 + below(3));
+    const int width = std::min(cols, 1 + below(height == 3 ? 2 : 3));
+    const Rectangle piece{below(rows - height + 1), below(cols - width + 1), height, width};
+    bool fits = true;
+    for (int row = piece.top; row < piece.top + height; ++row) {
+      for (int col = piece.left; col < piece.left + width; ++col) fits = fits && !map.blocked[map.node({row, col})];
+    }
+    if (!fits) continue;
+    fill(map, piece, true);
+    taken += height * width;
+  }
+  return largest_component(map);
+}
+
+GridMap streets_map(int rows, int cols, int max_street, int max_block, double squares, Rng& rng) {
+  GridMap map = blocked_map(rows, cols);
+  build_streets(map, {0, 0, rows, cols}, max_street, max_block, squares, rng);
+  return largest_component(map);
 }
 
 }  // namespace graphdrl
