@@ -12,18 +12,6 @@
 #include "graphdrl/graph/search.h"
 
 namespace graphdrl {
-namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-// The nodes that a walk can visit: reached within the budget, and left for the end.
-struct Reachable {
-  explicit Reachable(const Task& task);
-
-  std::vector<NodeId> nodes;   // the start first
-  std::vector<bool> contains;  // [N]
-  std::vector<double> prizes;  // [N], of first visits: 0 where visited before
-};
 
 Reachable::Reachable(const Task& task) : contains(task.view.node_count()), prizes(task.view.node_count()) {
   const bool anywhere = task.ends_anywhere();
@@ -40,6 +28,10 @@ Reachable::Reachable(const Task& task) : contains(task.view.node_count()), prize
     return NearestFirst::Next::kThrough;
   });
 }
+
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // The tree of blocks, with what it costs to arrive in them.
 struct ArrivalTree {
