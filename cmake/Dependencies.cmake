@@ -6,6 +6,21 @@ find_package(CLI11 REQUIRED)
 find_package(Protobuf REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 
+# CLP (EPL-2.0) is optional: without it bounds are those of planners/bound.h. Not by pkg-config's flags, which would link
+# the programs with a LAPACK of the linker's choice.
+if(GRAPHDRL_CLP)
+  find_path(CLP_INCLUDE_DIR ClpSimplex.hpp PATH_SUFFIXES coin)
+  find_library(CLP_LIBRARY Clp)
+  find_library(COIN_UTILS_LIBRARY CoinUtils)
+  if(CLP_INCLUDE_DIR AND CLP_LIBRARY AND COIN_UTILS_LIBRARY)
+    add_library(graphdrl_clp INTERFACE)
+    target_include_directories(graphdrl_clp SYSTEM INTERFACE ${CLP_INCLUDE_DIR})
+    target_link_libraries(graphdrl_clp INTERFACE ${CLP_LIBRARY} ${COIN_UTILS_LIBRARY})
+  else()
+    message(STATUS "CLP not found: built without bounds by linear programming")
+  endif()
+endif()
+
 if(GRAPHDRL_TORCH)
   # LibTorch's BLAS: OpenBLAS's OpenMP build and no other; with the pthread build its thread pool fights OpenMP's.
   # Debian keeps each build in a folder of its own. The programs look there first (DT_RPATH, which, unlike DT_RUNPATH,

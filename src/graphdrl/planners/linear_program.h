@@ -1,0 +1,83 @@
+// Linear programs, solved by CLP (github.com/coin-or/Clp).
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "graphdrl/planners/plan.h"
+
+namespace graphdrl {
+
+// Maximise the sum of objective · x, where lower <= x <= upper and each row's sum of value · x is within its bounds.
+// Columns come first, then rows; rows may come and go, the simplex method goes on from the last basis. Prints nothing.
+// One thread at a time. The same calls give the same answers, but for deadlines.
+class LinearProgram {
+ public:
+  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();  // of rows only
+
+  struct Row {
+    double lower = -kUnbounded;
+    double upper = kUnbounded;
+    std::vector<int> columns = {};
+    std::vector<double> values = {};
+
+    void add(int column, double value) {
+      columns.push_back(column);
+      values.push_back(value);
+    }
+  };
+
+  enum class Outcome {
+    kOptimal,
+    kInfeasible,  // proved: by weights of rows whose sum cannot be met
+    kStopped,     // at the deadline, by too many iterations, or by numbers that do not add up
+  };
+
+  LinearProgram();
+  ~LinearProgram();
+  LinearProgram(const LinearProgram&) = delete;
+  LinearProgram& operator=(const LinearProgram&) = delete;
+
+  // Its number. REQUIRES: finite bounds, no rows yet.
+  int add_column(double objective, double lower, double upper);
+  void add_rows(std::span<const Row> rows);
+  // Takes out the rows from `first` on that do not bind in the last solution.
+  void remove_slack_rows(int first);
+  void set_bounds(int column, double lower, double upper);
+
+  // Dual simplex. Cost: what the iterations cost, each about linear in rows and columns.
+  Outcome solve(Deadline deadline);
+
+  int columns() const;
+  int rows() const;
+  double lower(int column) const;
+  double upper(int column) const;
+  std::int64_t work() const { return work_; }  // of all iterations up to now, in rows and columns
+
+  // Of the last solve.
+  std::span<const double> values() const { return values_; }
+  // No solution has a higher objective. From the dual values and the bounds of columns alone, so that it holds whatever
+  // the solver's tolerances are and wherever it stopped [Neumaier and Shcherbina 2004].
+  double bound() const { return bound_; }
+  // By how much the bound falls, at least, where a column is 1 above its lower bound (negative) or below its upper one
+  // (positive), for each unit.
+  std::span<const double> reduced_costs() const { return reduced_costs_; }
+
+ private:
+  struct Solver;
+
+  // Computes the bound that weights of the rows prove, and the reduced costs. with_objective: else of 0.
+  double bound_by(const double* duals, bool with_objective);
+
+  std::unique_ptr<Solver> solver_;
+  std::vector<double> values_;
+  std::vector<double> duals_;
+  std::vector<double> reduced_costs_;
+  double bound_ = kUnbounded;
+  std::int64_t work_ = 0;
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,205 @@
+#include "graphdrl/planners/lp_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <queue>
+
+#include "graphdrl/planners/walk_relaxation.h"
+
+namespace graphdrl {
+namespace {
+
+using Outcome = LinearProgram::Outcome;
+
+constexpr std::int64_t kMostEdges = 4'000;
+constexpr double kStepRounding = 1e-6;  // of a step in which prizes add up
+constexpr double kPrizeMargin = 1e-9;   // relative, of bounds where they add up to anything
+constexpr int kRoundsOfCuts = 5;        // in a branch
+constexpr double kLeastFall = 0.01;     // of the bound by a round of cuts, in steps of prize or parts of the bound
+constexpr int kPatience = 5;            // rounds of cuts at the root without such a fall
+
+class BranchAndCut final : public LpBound {
+ public:
+  BranchAndCut(const Task& task, double bound) : task_(task), relaxation_(task), bound_(bound) {
+    for (int column = 0; column < program().columns(); ++column) {
+      root_bounds_.push_back({column, program().lower(column), program().upper(column)});
+    }
+  }
+
+  void cut(double prize, Effort effort) override;
+  void branch(double prize, Effort effort) override;
+  double bound() const override { return std::max(prize_, bound_); }
+  const std::vector<NodeId>& walk() const override { return walk_; }
+
+ private:
+  using Change = WalkRelaxation::Change;
+
+  // A part of all walks.
+  struct Part {
+    double bound;
+    double estimate;  // the bound before it was rounded down
+    int depth;
+    std::vector<Change> changes;
+
+    // A queue has the highest bound on top; of several, the deepest, for it is near to an end.
+    bool operator<(const Part& other) const {
+      if (bound != other.bound) return bound < other.bound;
+      return depth != other.depth ? depth < other.depth : estimate < other.estimate;
+    }
+  };
+
+  LinearProgram& program() { return relaxation_.program(); }
+  double rounded(double bound) const;
+  bool beaten(double bound) const { return bound <= prize_ * (1 + kPrizeMargin) + 1e-12; }
+  bool spent(const Effort& effort, std::int64_t before) {
+    return passed(effort.deadline) || static_cast<double>(program().work() - before) >= effort.work;
+  }
+  void apply(const std::vector<Change>& changes);
+  void fix_by_reduced_costs(std::vector<Change>& changes);
+  void take_walk();
+  Outcome solve_part(Part& part, const Effort& effort);
+
+  Task task_;
+  WalkRelaxation relaxation_;
+  double prize_ = 0;
+  double bound_;
+  std::vector<NodeId> walk_;
+  std::vector<Change> root_bounds_;
+  std::vector<Change> applied_;
+  std::priority_queue<Part> parts_;
+  bool begun_ = false;
+  bool cut_ = false;
+};
+
+// What walks can be worth at most, as prizes add up in steps.
+double BranchAndCut::rounded(double bound) const {
+  const double step = relaxation_.prize_step();
+  return step > 0 ? std::floor(bound / step + kStepRounding) * step : bound;
+}
+
+void BranchAndCut::cut(double prize, Effort effort) {
+  prize_ = std::max(prize_, prize);
+  const std::int64_t before = program().work();
+  const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
+  double last = kNoLimit;
+  for (int tired = 0; tired < kPatience && !beaten(bound_) && !spent(effort, before);) {
+    const Outcome outcome = program().solve(effort.deadline);
+    bound_ = std::min(bound_, rounded(program().bound()));
+    if (outcome != Outcome::kOptimal || relaxation_.separate() == 0) break;
+    tired = last - program().bound() < kLeastFall * scale ? tired + 1 : 0;
+    last = std::min(last, program().bound());
+  }
+}
+
+void BranchAndCut::apply(const std::vector<Change>& changes) {
+  for (const Change& change : applied_) {
+    const Change& root = root_bounds_[change.column];
+    program().set_bounds(root.column, root.lower, root.upper);
+  }
+  for (const Change& change : changes) program().set_bounds(change.column, change.lower, change.upper);
+  applied_ = changes;
+}
+
+// Columns that cannot leave their bound in a better walk stay there.
+void BranchAndCut::fix_by_reduced_costs(std::vector<Change>& changes) {
+  const double goal = relaxation_.prize_step() > 0 ? prize_ + relaxation_.prize_step() * (1 - kStepRounding) : prize_;
+  const double slack = program().bound() - goal;
+  const auto costs = program().reduced_costs();
+  for (int column = 0; column < program().columns(); ++column) {
+    const double lower = program().lower(column);
+    const double upper = program().upper(column);
+    if (lower == upper || slack >= std::abs(costs[column])) continue;
+    const double kept = costs[column] < 0 ? lower : upper;
+    changes.push_back({column, kept, kept});
+    program().set_bounds(column, kept, kept);
+  }
+  applied_ = changes;
+}
+
+void BranchAndCut::take_walk() {
+  std::vector<NodeId> walk = relaxation_.walk();
+  const Plan plan = plan_of_walk(task_, walk);
+  if (plan.cost > task_.limit() || (!task_.ends_anywhere() && walk.back() != task_.end) || plan.prize <= prize_) return;
+  prize_ = plan.prize;
+  walk_ = std::move(walk);
+}
+
+// Solves a part with rounds of cuts, until it is beaten or cuts do not help.
+Outcome BranchAndCut::solve_part(Part& part, const Effort& effort) {
+  apply(part.changes);
+  const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
+  double last = kNoLimit;
+  for (int round = 0;; ++round) {
+    const Outcome outcome = program().solve(effort.deadline);
+    if (outcome == Outcome::kInfeasible) part.bound = -kNoLimit;
+    if (outcome == Outcome::kInfeasible) return outcome;
+    part.estimate = std::min(part.estimate, program().bound());
+    part.bound = std::min(part.bound, rounded(part.estimate));
+    if (outcome != Outcome::kOptimal || beaten(part.bound)) return outcome;
+    if (round >= kRoundsOfCuts || last - part.estimate < kLeastFall * scale) {
+      if (!relaxation_.branches().first.empty()) return outcome;
+    }
+    last = part.estimate;
+    if (relaxation_.separate() == 0) return outcome;
+  }
+}
+
+void BranchAndCut::branch(double prize, Effort effort) {
+  prize_ = std::max(prize_, prize);
+  const std::int64_t before = program().work();
+  if (!begun_) parts_.push({bound_, kNoLimit, 0, {}});
+  begun_ = true;
+  const bool verbose = std::getenv("LP_VERBOSE") != nullptr;
+  int count = 0;
+  while (!beaten(bound_) && !spent(effort, before)) {
+    if (parts_.empty() || beaten(parts_.top().bound)) {
+      bound_ = prize_;
+      break;
+    }
+    bound_ = std::min(bound_, parts_.top().bound);
+    Part part = parts_.top();
+    parts_.pop();
+    relaxation_.remove_slack_rows();
+    const Outcome outcome = solve_part(part, effort);
+    ++count;
+    if (verbose && count % 50 == 0) {
+      fprintf(stderr, "%d parts open %zu bound %g depth %d est %g rows %d prize %g\n", count, parts_.size(), bound_,
+              part.depth, part.estimate, program().rows(), prize_);
+    }
+    if (outcome == Outcome::kInfeasible || beaten(part.bound)) continue;
+    if (outcome == Outcome::kStopped) {
+      parts_.push(std::move(part));
+      if (passed(effort.deadline)) break;
+      continue;
+    }
+    const WalkRelaxation::Branches branches = relaxation_.branches();
+    if (branches.first.empty()) {
+      take_walk();
+      if (!beaten(part.bound)) break;
+      continue;
+    }
+    fix_by_reduced_costs(part.changes);
+    for (const auto& changes : {branches.first, branches.second}) {
+      Part child = part;
+      ++child.depth;
+      child.changes.insert(child.changes.end(), changes.begin(), changes.end());
+      parts_.push(std::move(child));
+    }
+  }
+  if (verbose) fprintf(stderr, "%d parts, open %zu, bound %g, prize %g\n", count, parts_.size(), bound_, prize_);
+}
+
+}  // namespace
+
+std::unique_ptr<LpBound> make_lp_bound(const Task& task, double bound) {
+  check(task);
+  if (task.view.open().edge_count() > kMostEdges) return nullptr;
+  return std::make_unique<BranchAndCut>(task, bound);
+}
+
+bool has_lp_bound() {
+  return true;
+}
+
+}  // namespace graphdrl

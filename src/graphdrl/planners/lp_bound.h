@@ -1,0 +1,44 @@
+// Upper bounds by linear programming over the edges of a graph, and proofs of optimality by branch and cut.
+//
+// The relaxation is WalkRelaxation's [after Fischetti, Salazar González and Toth 1998]. Branching halves the nodes
+// where the walk may end, then decides about visits, then about edges; the part with the highest bound comes next, so
+// that the bound falls as parts are done, and columns that could not matter any more are fixed by their reduced costs.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "graphdrl/planners/plan.h"
+
+namespace graphdrl {
+
+class LpBound {
+ public:
+  virtual ~LpBound() = default;
+
+  // Until when to work: a deadline, and so many rows and columns of simplex iterations. The result depends on the work
+  // alone where there is no deadline.
+  struct Effort {
+    Deadline deadline = {};
+    double work = kNoLimit;
+  };
+
+  // Adds cutting planes to the relaxation of all walks while that helps. prize: of the best walk known.
+  virtual void cut(double prize, Effort effort) = 0;
+  // Goes on from there by branching, until a walk is optimal or the effort is spent.
+  virtual void branch(double prize, Effort effort) = 0;
+
+  // No walk has a higher prize; not below the prizes told.
+  virtual double bound() const = 0;
+  // A walk that branching found, better than any it was told of, or empty.
+  virtual const std::vector<NodeId>& walk() const = 0;
+};
+
+// bound: one known. Empty where the graph has too many edges, or in a build without CLP.
+// Throws Error where there is no walk at all [check(Task)].
+std::unique_ptr<LpBound> make_lp_bound(const Task& task, double bound);
+
+// Whether this build has CLP.
+bool has_lp_bound();
+
+}  // namespace graphdrl

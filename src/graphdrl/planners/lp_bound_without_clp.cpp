@@ -1,0 +1,15 @@
+// Takes the place of lp_bound.cpp in a build without CLP.
+#include "graphdrl/planners/lp_bound.h"
+
+namespace graphdrl {
+
+std::unique_ptr<LpBound> make_lp_bound(const Task& task, double) {
+  check(task);
+  return nullptr;
+}
+
+bool has_lp_bound() {
+  return false;
+}
+
+}  // namespace graphdrl

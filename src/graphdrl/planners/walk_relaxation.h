@@ -1,0 +1,111 @@
+// The linear relaxation of all walks that a task allows, tightened by cutting planes as in branch and cut for the
+// orienteering problem [Fischetti, Salazar González and Toth 1998], on the edges of the graph itself.
+//
+// Columns: y[v] in [0, 1], node v is visited; z[v] in [0, 1], the walk ends there. In an undirected graph a best walk
+// uses an edge twice at most, for two uses less leave it connected and the degrees' parity as it was: u[e], edge e is
+// used once; w[e], twice. In a directed graph x[a], how often an arc is used.
+//
+// Rows, with s the start, S a set of nodes without s, and x = u + 2 w:
+//   cost        sum of c x <= budget, rounded down to what costs can add up to; less where it could not be spent in
+//               full on a walk that ends there, for in a bipartite graph its end says whether its cost is odd
+//   ends        sum of z = 1, z[v] <= y[v]
+//   degrees     x(δ(v)) + z[v] >= 2 y[v]; directed: x(in(v)) >= y[v], and as often out of v as into it
+//   edges       u[e] + w[e] <= y[v] for both its nodes
+//   connection  x(δ(S)) + z(S) >= 2 y[v] for v in S; directed: x(in(S)) >= y[v]
+//   blocks      y[v] <= y[r], where r parts v's block from the start
+//   parity      an even number of the u of δ(S) and of z(S) is 1: u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1), for any
+//               F in δ(S)
+// Degrees, cost and ends are there from the beginning, the others once a solution violates them: connection by maximum
+// flows from each node to the start, parity for components of the edges with a fraction.
+#pragma once
+
+#include <vector>
+
+#include "graphdrl/planners/bound.h"
+#include "graphdrl/planners/linear_program.h"
+
+namespace graphdrl {
+
+class WalkRelaxation {
+ public:
+  struct Change {  // of a column's bounds
+    int column;
+    double lower;
+    double upper;
+  };
+  struct Branches {
+    std::vector<Change> first;
+    std::vector<Change> second;
+  };
+
+  explicit WalkRelaxation(const Task& task);
+
+  LinearProgram& program() { return program_; }
+  // Prizes add up to multiples of it; 0 where nothing is known.
+  double prize_step() const { return prize_step_; }
+
+  // Takes out the rows added by separate() that do not bind.
+  void remove_slack_rows() { program_.remove_slack_rows(fixed_rows_); }
+  // Adds rows that the last solution violates. Their number.
+  int separate();
+  // Two parts without the last solution, which together hold every walk; empty ones where it is integral.
+  Branches branches() const;
+  // The walk that an integral solution is, once it violates no row.
+  std::vector<NodeId> walk() const;
+
+ private:
+  struct Arc {  // of an edge: from its lower node to the higher, or as it leads
+    int from;
+    int to;
+    double cost;
+    int once;   // column; of a directed graph how often
+    int twice;  // column; -1 in a directed graph
+  };
+  // To where flow may go from a node: nearer to the start, if it has its way.
+  struct Link {
+    int to;
+    int arc;
+    int reverse;  // the same link from the other side
+  };
+
+  void add_columns(const Task& task, const Reachable& reachable);
+  void add_rows(const Task& task);
+  std::vector<bool> odd_ends(double step, double budget) const;
+  void add_links();
+
+  double value(int column) const { return column < 0 ? 0 : program_.values()[column]; }
+  double uses(const Arc& arc) const;
+  void add_uses(LinearProgram::Row& row, const Arc& arc, double factor) const;
+  void add_ends(LinearProgram::Row& row, double factor, const std::vector<char>& inside) const;
+
+  void separate_simple();
+  std::vector<int> components(double fraction) const;
+  void separate_parity();
+  void separate_parity_of(const std::vector<int>& component);
+  void add_parity_row(const std::vector<int>& component, int which);
+  void separate_connection();
+  bool flow_reaches(int node, double needed);
+  void add_connection_row(int node);
+
+  LinearProgram program_;
+  bool directed_;
+  double prize_step_ = 0;
+  int fixed_rows_ = 0;
+  std::vector<NodeId> nodes_;  // [n], the start first
+  std::vector<int> visit_;     // [n], columns
+  std::vector<int> end_;       // [n], columns; -1 where no walk ends
+  std::vector<int> place_;     // [n], in a depth-first order: what is near stands together
+  std::vector<int> parent_;    // [n], the root of its block; -1 for the start
+  std::vector<Arc> arcs_;
+  std::vector<std::vector<int>> at_;      // [n], arcs
+  std::vector<std::vector<Link>> links_;  // [n]
+  std::vector<LinearProgram::Row> found_;
+
+  // Of the maximum flows.
+  std::vector<std::vector<double>> capacity_;  // as links_
+  std::vector<char> settled_;                  // [n], as well connected as any node still to come
+  std::vector<char> inside_;                   // [n], S
+  std::vector<int> reached_;
+};
+
+}  // namespace graphdrl
