@@ -2,13 +2,15 @@
 
 #include <ClpEventHandler.hpp>
 #include <ClpSimplex.hpp>
-#include <CoinMessageHandler.hpp>
+#include <CoinPackedMatrix.hpp>
 #include <algorithm>
 #include <cmath>
 
 namespace graphdrl {
 namespace {
 
+constexpr int kPrimalInfeasible = 1;        // a status of CLP
+constexpr int kOverhead = 10;               // of a solve, in iterations
 constexpr int kIterationsPerRow = 20;       // of one solve: more is a sign of cycling
 constexpr int kFewestIterations = 2'000;    // whatever the number of rows
 constexpr double kRounding = 1e-11;         // relative, of the sums that make a bound
@@ -81,23 +83,36 @@ void LinearProgram::set_bounds(int column, double lower, double upper) {
 LinearProgram::Outcome LinearProgram::solve(Deadline deadline) {
   ClpSimplex& model = solver_->model;
   static_cast<DeadlineHandler*>(model.eventHandler())->deadline = deadline;
+  run_dual();
+  if (model.status() == kPrimalInfeasible) {
+    if (proves_infeasible()) return Outcome::kInfeasible;
+    // The weights of a warm start are at times those of a solve before.
+    model.allSlackBasis(true);
+    run_dual();
+    if (model.status() == kPrimalInfeasible && proves_infeasible()) return Outcome::kInfeasible;
+  }
+  values_.assign(model.primalColumnSolution(), model.primalColumnSolution() + model.numberColumns());
+  bound_ = bound_by(model.dualRowSolution(), true);
+  return model.status() == 0 ? Outcome::kOptimal : Outcome::kStopped;
+}
+
+void LinearProgram::run_dual() {
+  ClpSimplex& model = solver_->model;
   model.setNumberIterations(0);
   model.setMaximumIterations(std::max(kFewestIterations, kIterationsPerRow * model.numberRows()));
   model.dual();
-  work_ += static_cast<std::int64_t>(10 + model.numberIterations()) * (model.numberRows() + model.numberColumns());
-  values_.assign(model.primalColumnSolution(), model.primalColumnSolution() + model.numberColumns());
-  if (model.status() == 1) {
-    // Weights of the rows that cannot be met together; of which sign, they do not say.
-    const std::unique_ptr<double[]> ray(model.infeasibilityRay());
-    for (const double sign : {1.0, -1.0}) {
-      if (ray == nullptr) break;
-      std::vector<double> weights(ray.get(), ray.get() + model.numberRows());
-      for (double& weight : weights) weight *= sign;
-      if (bound_by(weights.data(), false) < -kInfeasibleMargin) return Outcome::kInfeasible;
-    }
-  }
-  bound_ = bound_by(model.dualRowSolution(), true);
-  return model.status() == 0 ? Outcome::kOptimal : Outcome::kStopped;
+  work_ += std::int64_t{kOverhead + model.numberIterations()} * (model.numberRows() + model.numberColumns());
+}
+
+// Whether CLP's weights of the rows show that these cannot be met together; of which sign they are, CLP does not say.
+bool LinearProgram::proves_infeasible() {
+  const ClpSimplex& model = solver_->model;
+  const std::unique_ptr<double[]> ray(model.infeasibilityRay());
+  if (ray == nullptr) return false;
+  std::vector<double> weights(ray.get(), ray.get() + model.numberRows());
+  if (bound_by(weights.data(), false) < -kInfeasibleMargin) return true;
+  for (double& weight : weights) weight = -weight;
+  return bound_by(weights.data(), false) < -kInfeasibleMargin;
 }
 
 double LinearProgram::bound_by(const double* duals, bool with_objective) {
@@ -119,9 +134,14 @@ double LinearProgram::bound_by(const double* duals, bool with_objective) {
   const int count = model.numberColumns();
   reduced_costs_.assign(count, 0.0);
   if (with_objective) std::copy(model.objective(), model.objective() + count, reduced_costs_.begin());
-  model.transposeTimes(-1, duals_.data(), reduced_costs_.data());
+  // Not by ClpModel::transposeTimes, which takes the scaled matrix where there is one.
+  const CoinPackedMatrix& matrix = *model.matrix();
   for (int column = 0; column < count; ++column) {
     double& cost = reduced_costs_[column];
+    const CoinBigIndex first = matrix.getVectorFirst(column);
+    for (CoinBigIndex i = first; i < first + matrix.getVectorSize(column); ++i) {
+      cost -= duals_[matrix.getIndices()[i]] * matrix.getElements()[i];
+    }
     add(cost * (cost > 0 ? model.columnLower()[column] : model.columnUpper()[column]));
     cost = -cost;
   }

@@ -69,6 +69,8 @@ class LinearProgram {
  private:
   struct Solver;
 
+  void run_dual();
+  bool proves_infeasible();
   // Computes the bound that weights of the rows prove, and the reduced costs. with_objective: else of 0.
   double bound_by(const double* duals, bool with_objective);
 

@@ -103,7 +103,8 @@ void BranchAndCut::apply(const std::vector<Change>& changes) {
 
 // Columns that cannot leave their bound in a better walk stay there.
 void BranchAndCut::fix_by_reduced_costs(std::vector<Change>& changes) {
-  const double goal = relaxation_.prize_step() > 0 ? prize_ + relaxation_.prize_step() * (1 - kStepRounding) : prize_;
+  const double step = relaxation_.prize_step();
+  const double goal = step > 0 ? (std::floor(prize_ / step + kStepRounding) + 1 - 2 * kStepRounding) * step : prize_;
   const double slack = program().bound() - goal;
   const auto costs = program().reduced_costs();
   for (int column = 0; column < program().columns(); ++column) {
@@ -170,8 +171,7 @@ void BranchAndCut::branch(double prize, Effort effort) {
     if (outcome == Outcome::kInfeasible || beaten(part.bound)) continue;
     if (outcome == Outcome::kStopped) {
       parts_.push(std::move(part));
-      if (passed(effort.deadline)) break;
-      continue;
+      break;
     }
     const WalkRelaxation::Branches branches = relaxation_.branches();
     if (branches.first.empty()) {

@@ -33,9 +33,12 @@ double common_step(const std::vector<double>& values) {
 
 }  // namespace
 
-WalkRelaxation::WalkRelaxation(const Task& task) : directed_(task.view.open().directed()) {
-  const Reachable reachable(task);
-  nodes_ = reachable.nodes;
+WalkRelaxation::WalkRelaxation(const Task& task) : WalkRelaxation(task, Reachable(task)) {}
+
+WalkRelaxation::WalkRelaxation(const Task& task, const Reachable& reachable)
+    : directed_(task.view.open().directed()),
+      nodes_(reachable.nodes),
+      network_(static_cast<int>(reachable.nodes.size()) + 1) {
   const Graph& open = task.view.open();
   std::vector<int> number(task.view.node_count(), -1);
   for (int i = 0; i < std::ssize(nodes_); ++i) number[nodes_[i]] = i;
@@ -84,7 +87,7 @@ void WalkRelaxation::add_columns(const Task& task, const Reachable& reachable) {
   prize_step_ = common_step(prizes);
   const auto most_uses = static_cast<double>(nodes_.size());  // a way to each first visit uses an arc once at most
   for (Arc& arc : arcs_) {
-    const double affordable = arc.cost > 0 ? std::floor(task.limit() / arc.cost) : most_uses;
+    const double affordable = arc.cost > 0 ? std::floor(task.limit() / arc.cost + kStepRounding) : most_uses;
     arc.once = program_.add_column(0, 0, directed_ ? std::min(affordable, most_uses) : 1);
     if (!directed_) arc.twice = program_.add_column(0, 0, affordable >= 2 ? 1 : 0);
   }
@@ -173,6 +176,7 @@ int WalkRelaxation::separate() {
   found_.clear();
   separate_simple();
   if (!directed_) separate_parity();
+  if (!directed_) separate_partitions();
   separate_connection();
   program_.add_rows(found_);
   return static_cast<int>(found_.size());
@@ -198,8 +202,8 @@ void WalkRelaxation::separate_simple() {
   }
 }
 
-// The components of the edges whose u is further than `fraction` from a whole number. [n]
-std::vector<int> WalkRelaxation::components(double fraction) const {
+// Of the edges for which `joins` says so. [n]
+std::vector<int> WalkRelaxation::components(const std::function<bool(const Arc&)>& joins) const {
   std::vector<int> component(nodes_.size(), -1);
   std::vector<int> queue;
   int count = 0;
@@ -212,8 +216,7 @@ std::vector<int> WalkRelaxation::components(double fraction) const {
       queue.pop_back();
       for (const int i : at_[node]) {
         const int next = arcs_[i].from + arcs_[i].to - node;
-        const double once = value(arcs_[i].once);
-        if (component[next] >= 0 || std::min(once, 1 - once) <= fraction) continue;
+        if (component[next] >= 0 || !joins(arcs_[i])) continue;
         component[next] = count;
         queue.push_back(next);
       }
@@ -223,12 +226,104 @@ std::vector<int> WalkRelaxation::components(double fraction) const {
   return component;
 }
 
+// Partitions into each node alone, and into what edges of more than some value join. Of its parts those count for which
+// the row is violated most, the others are one with the start's: a minimum cut chooses among parts, each worth its y,
+// for which the edges at any of them must be paid.
+void WalkRelaxation::separate_partitions() {
+  std::set<std::vector<int>> tried;
+  for (const double least : {2.0, 0.99, 0.9, 0.75, 0.6, 0.4}) {
+    std::vector<int> component = components([&](const Arc& arc) { return value(arc.once) + value(arc.twice) > least; });
+    if (tried.insert(component).second) separate_partition(component);
+  }
+}
+
+void WalkRelaxation::separate_partition(const std::vector<int>& component) {
+  std::vector<int> worth_most(1 + *std::max_element(component.begin(), component.end()), -1);  // node of a part
+  for (int i = 0; i < std::ssize(nodes_); ++i) {
+    int& best = worth_most[component[i]];
+    if (best < 0 || value(visit_[i]) > value(visit_[best])) best = i;
+  }
+  std::vector<const Arc*> across;
+  for (const Arc& arc : arcs_) {
+    if (component[arc.from] != component[arc.to]) across.push_back(&arc);
+  }
+  const int parts = static_cast<int>(worth_most.size());
+  const int source = parts + static_cast<int>(across.size());
+  MaxFlow choice(source + 2);
+  double worth = 0;
+  for (int part = 0; part < parts; ++part) {
+    if (part == component[0]) continue;
+    choice.add_arc(source, part, value(visit_[worth_most[part]]));
+    worth += value(visit_[worth_most[part]]);
+  }
+  for (int i = 0; i < std::ssize(across); ++i) {
+    choice.add_arc(parts + i, source + 1, value(across[i]->once) + value(across[i]->twice));
+    for (const int node : {across[i]->from, across[i]->to}) {
+      if (component[node] != component[0]) choice.add_arc(component[node], parts + i, kNoLimit);
+    }
+  }
+  if (choice.reaches(source, source + 1, worth - kViolation)) return;
+  std::vector<char> chosen(source + 2);
+  for (const int node : choice.near_side()) chosen[node] = 1;
+  LinearProgram::Row& row = found_.emplace_back();
+  row.lower = 0;
+  for (const Arc* const arc : across) {
+    if (chosen[component[arc->from]] == 0 && chosen[component[arc->to]] == 0) continue;
+    row.add(arc->once, 1);
+    row.add(arc->twice, 1);
+  }
+  for (int part = 0; part < parts; ++part) {
+    if (chosen[part] != 0) row.add(visit_[worth_most[part]], -1);
+  }
+}
+
 // Each node alone, and what hangs together by edges that are not integral, by more and more of a fraction.
 void WalkRelaxation::separate_parity() {
   std::set<std::vector<int>> tried;
   for (const double fraction : {1.0, 0.01, 0.1, 0.2, 0.3, 0.4}) {
-    std::vector<int> component = components(fraction);
+    std::vector<int> component = components([&](const Arc& arc) {
+      const double once = value(arc.once);
+      return std::min(once, 1 - once) > fraction;
+    });
     if (tried.insert(component).second) separate_parity_of(component);
+  }
+  separate_parity_cuts();
+}
+
+// S from the minimum cuts between nodes, by how far values are from whole numbers: if any row is violated, then one of
+// a cut tree [Padberg and Rao 1982; Letchford, Reinelt and Theis 2008]. The cuts are those of an equivalent flow tree
+// [Gusfield 1990].
+void WalkRelaxation::separate_parity_cuts() {
+  const int count = static_cast<int>(nodes_.size());
+  MaxFlow distances(count);
+  const auto add = [&](int one, int other, double part) {
+    const double distance = std::min(part, 1 - part);
+    if (distance > kViolation) distances.add_arc(one, other, distance, distance);
+  };
+  for (const Arc& arc : arcs_) add(arc.from, arc.to, value(arc.once));
+  for (int i = 1; i < count; ++i) add(i, 0, value(end_[i]));
+  const std::vector<int> part = components([&](const Arc& arc) {
+    const double once = value(arc.once);
+    return std::min(once, 1 - once) > kViolation;
+  });
+  std::vector<int> first(1 + *std::max_element(part.begin(), part.end()), -1);
+  std::vector<int> toward(count, -1);
+  for (int i = 0; i < count; ++i) {
+    if (first[part[i]] < 0) {
+      first[part[i]] = i;
+    } else {
+      toward[i] = first[part[i]];
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    if (toward[i] < 0) continue;
+    distances.reaches(i, toward[i], kNoLimit);
+    std::vector<int> side(count);
+    for (const int node : distances.near_side()) side[node] = 1;
+    for (int j = i + 1; j < count; ++j) {
+      if (side[j] != 0 && toward[j] == toward[i]) toward[j] = i;
+    }
+    separate_parity_of(side);
   }
 }
 
@@ -258,7 +353,8 @@ void WalkRelaxation::separate_parity_of(const std::vector<int>& component) {
     cuts[component[i]].size += 1;
   }
   std::vector<double> seen;
-  for (int which = 0; which < std::ssize(cuts); ++which) {
+  // Of two parts the cut is the same.
+  for (int which = cuts.size() == 2 ? 1 : 0; which < std::ssize(cuts); ++which) {
     Cut& cut = cuts[which];
     cut.add(std::clamp(which == component[0] ? 1 - cut.end : cut.end, 0.0, 1.0));
     if (cut.distance + (cut.odd ? 0 : cut.flip) < 1 - kViolation) add_parity_row(component, which);
@@ -303,115 +399,50 @@ void WalkRelaxation::add_parity_row(const std::vector<int>& component, int which
   }
 }
 
+// The network in which flow goes from a node back to the start, node n. An end is a way to the start.
 void WalkRelaxation::add_links() {
-  const auto link = [&](int from, int to, int arc) {
-    links_[from].push_back({.to = to, .arc = arc, .reverse = static_cast<int>(links_[to].size())});
-    links_[to].push_back({.to = from, .arc = -1, .reverse = static_cast<int>(links_[from].size()) - 1});
-  };
-  links_.resize(nodes_.size());
-  for (int i = 0; i < std::ssize(arcs_); ++i) {
-    link(arcs_[i].to, arcs_[i].from, i);
-    if (!directed_) links_[arcs_[i].from].back().arc = i;  // its other side is the edge the other way
-  }
-  capacity_.resize(nodes_.size());
+  const int count = static_cast<int>(nodes_.size());
+  for (const Arc& arc : arcs_) network_.add_arc(arc.to, arc.from, 0);
+  for (int node = 0; node < count; ++node) to_start_.push_back(network_.add_arc(node, count, 0));
 }
 
 // In order of y, so that a node once found connected well enough is in no violated S of those to come: it counts as the
 // start for them, and flows end soon.
 void WalkRelaxation::separate_connection() {
-  for (int node = 0; node < std::ssize(nodes_); ++node) {
-    capacity_[node].clear();
-    for (const Link& link : links_[node]) capacity_[node].push_back(link.arc < 0 ? 0 : uses(arcs_[link.arc]));
+  for (std::size_t arc = 0; arc < arcs_.size(); ++arc) {
+    const double capacity = uses(arcs_[arc]);
+    network_.set_capacity(static_cast<int>(2 * arc), capacity, directed_ ? 0 : capacity);
   }
+  for (std::size_t i = 0; i < nodes_.size(); ++i) network_.set_capacity(to_start_[i], directed_ ? 0 : value(end_[i]));
+  network_.set_capacity(to_start_[0], kNoLimit);
   std::vector<int> order(nodes_.size() - 1);
   std::iota(order.begin(), order.end(), 1);
   std::stable_sort(order.begin(), order.end(),
                    [&](int one, int other) { return value(visit_[one]) > value(visit_[other]); });
-  settled_.assign(nodes_.size(), 0);
-  settled_[0] = 1;
   std::vector<char> cut_off(nodes_.size());
   for (const int node : order) {
     const double needed = (directed_ ? 1 : 2) * value(visit_[node]) - kViolation;
     if (needed <= 0) break;
     if (cut_off[node] != 0) continue;
-    if (flow_reaches(node, needed)) {
-      settled_[node] = 1;
+    if (network_.reaches(node, static_cast<int>(nodes_.size()), needed)) {
+      network_.set_capacity(to_start_[node], kNoLimit);
       continue;
     }
     add_connection_row(node);
-    for (const int other : reached_) cut_off[other] = 1;
+    for (const int other : network_.near_side()) cut_off[other] = 1;
   }
-}
-
-// Whether so much flows from a node to settled ones, ends counting as ways to the start; else reached_ is S. Leaves the
-// capacities as they were. Augmenting paths, shortest first [Edmonds and Karp 1972].
-bool WalkRelaxation::flow_reaches(int node, double needed) {
-  struct Used {
-    int from;
-    int link;
-    double flow;
-  };
-  std::vector<Used> used;
-  std::vector<double> end_left(nodes_.size());
-  for (std::size_t i = 0; i < nodes_.size(); ++i) end_left[i] = directed_ ? 0 : value(end_[i]);
-  std::vector<Used> came(nodes_.size());  // from where, by which link
-  double flow = 0;
-  while (flow < needed) {
-    inside_.assign(nodes_.size(), 0);
-    inside_[node] = 1;
-    reached_.assign(1, node);
-    int last = -1;  // where a path leaves
-    bool by_end = false;
-    for (std::size_t head = 0; head < reached_.size() && last < 0; ++head) {
-      const int here = reached_[head];
-      if (end_left[here] > kIntegral) {
-        last = here;
-        by_end = true;
-        break;
-      }
-      for (int i = 0; i < std::ssize(links_[here]); ++i) {
-        const int next = links_[here][i].to;
-        if (inside_[next] != 0 || capacity_[here][i] <= kIntegral) continue;
-        inside_[next] = 1;
-        came[next] = {here, i, 0};
-        if (settled_[next] != 0) {
-          last = next;
-          break;
-        }
-        reached_.push_back(next);
-      }
-    }
-    if (last < 0) break;
-    double most = by_end ? end_left[last] : kNoLimit;
-    for (int at = last; at != node; at = came[at].from) most = std::min(most, capacity_[came[at].from][came[at].link]);
-    if (by_end) end_left[last] -= most;
-    for (int at = last; at != node; at = came[at].from) {
-      const auto [from, i, unused] = came[at];
-      capacity_[from][i] -= most;
-      capacity_[at][links_[from][i].reverse] += most;
-      used.push_back({from, i, most});
-    }
-    flow += most;
-  }
-  for (const Used& part : used) {
-    const Link& link = links_[part.from][part.link];
-    capacity_[part.from][part.link] += part.flow;
-    capacity_[link.to][link.reverse] -= part.flow;
-  }
-  return flow >= needed;
 }
 
 void WalkRelaxation::add_connection_row(int node) {
-  inside_.assign(nodes_.size(), 0);
-  for (const int other : reached_) inside_[other] = 1;
+  std::vector<char> inside(nodes_.size());
+  for (const int other : network_.near_side()) inside[other] = 1;
   LinearProgram::Row& row = found_.emplace_back();
   row.lower = 0;
   for (const Arc& arc : arcs_) {
-    const bool crosses =
-        directed_ ? inside_[arc.to] != 0 && inside_[arc.from] == 0 : inside_[arc.to] != inside_[arc.from];
+    const bool crosses = directed_ ? inside[arc.to] != 0 && inside[arc.from] == 0 : inside[arc.to] != inside[arc.from];
     if (crosses) add_uses(row, arc, 1);
   }
-  if (!directed_) add_ends(row, 1, inside_);
+  if (!directed_) add_ends(row, 1, inside);
   row.add(visit_[node], directed_ ? -1 : -2);
 }
 

@@ -13,14 +13,18 @@
 //   edges       u[e] + w[e] <= y[v] for both its nodes
 //   connection  x(δ(S)) + z(S) >= 2 y[v] for v in S; directed: x(in(S)) >= y[v]
 //   blocks      y[v] <= y[r], where r parts v's block from the start
-//   parity      an even number of the u of δ(S) and of z(S) is 1: u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1), for any
+//   partition   u + w of all edges between the parts V0, V1 … Vk of V, of which V0 has s, >= y[v1] + … + y[vk], vi in
+//   Vi parity      an even number of the u of δ(S) and of z(S) is 1: u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1), for
+//   any
 //               F in δ(S)
 // Degrees, cost and ends are there from the beginning, the others once a solution violates them: connection by maximum
 // flows from each node to the start, parity for components of the edges with a fraction.
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "graphdrl/graph/max_flow.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/linear_program.h"
 
@@ -61,13 +65,7 @@ class WalkRelaxation {
     int once;   // column; of a directed graph how often
     int twice;  // column; -1 in a directed graph
   };
-  // To where flow may go from a node: nearer to the start, if it has its way.
-  struct Link {
-    int to;
-    int arc;
-    int reverse;  // the same link from the other side
-  };
-
+  WalkRelaxation(const Task& task, const Reachable& reachable);
   void add_columns(const Task& task, const Reachable& reachable);
   void add_rows(const Task& task);
   std::vector<bool> odd_ends(double step, double budget) const;
@@ -79,12 +77,14 @@ class WalkRelaxation {
   void add_ends(LinearProgram::Row& row, double factor, const std::vector<char>& inside) const;
 
   void separate_simple();
-  std::vector<int> components(double fraction) const;
+  std::vector<int> components(const std::function<bool(const Arc&)>& joins) const;
   void separate_parity();
+  void separate_parity_cuts();
   void separate_parity_of(const std::vector<int>& component);
   void add_parity_row(const std::vector<int>& component, int which);
+  void separate_partitions();
+  void separate_partition(const std::vector<int>& component);
   void separate_connection();
-  bool flow_reaches(int node, double needed);
   void add_connection_row(int node);
 
   LinearProgram program_;
@@ -97,15 +97,10 @@ class WalkRelaxation {
   std::vector<int> place_;     // [n], in a depth-first order: what is near stands together
   std::vector<int> parent_;    // [n], the root of its block; -1 for the start
   std::vector<Arc> arcs_;
-  std::vector<std::vector<int>> at_;      // [n], arcs
-  std::vector<std::vector<Link>> links_;  // [n]
+  std::vector<std::vector<int>> at_;  // [n], arcs
   std::vector<LinearProgram::Row> found_;
-
-  // Of the maximum flows.
-  std::vector<std::vector<double>> capacity_;  // as links_
-  std::vector<char> settled_;                  // [n], as well connected as any node still to come
-  std::vector<char> inside_;                   // [n], S
-  std::vector<int> reached_;
+  MaxFlow network_;
+  std::vector<int> to_start_;  // [n], its arcs
 };
 
 }  // namespace graphdrl

@@ -1,0 +1,99 @@
+// Bounds and walks of branch and cut beside brute force, on thousands of small random worlds of every kind.
+#include "graphdrl/planners/lp_bound.h"
+
+#include <gtest/gtest.h>
+
+#include "graphdrl/env/walk.h"
+#include "graphdrl/env/world_families.h"
+#include "graphdrl/planners/baselines.h"
+#include "graphdrl/planners/bound.h"
+#include "graphdrl/planners/exact.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+// Sparse and dense, directed or not, with and without costs, prizes, blocked nodes, an end and nodes visited before.
+Task random_task(Rng& rng) {
+  const auto nodes = static_cast<NodeId>(1 + rng.below(10));
+  const auto any_node = [&] { return static_cast<NodeId>(rng.below(static_cast<std::uint32_t>(nodes))); };
+  const bool directed = rng.below(2) == 0;
+  const std::uint32_t weights = rng.below(3);
+  std::vector<Edge> edges;
+  for (std::uint32_t i = rng.below(static_cast<std::uint32_t>(2 * nodes)); i > 0; --i) {
+    edges.push_back({any_node(), any_node(), weights == 0 ? 1 : weights == 1 ? 0.25 * rng.below(12) : rng.uniform()});
+  }
+  if (!directed && rng.below(2) == 0) {  // connected
+    for (NodeId node = 1; node < nodes; ++node) edges.push_back({node - 1, node, weights == 2 ? rng.uniform() : 1});
+  }
+  std::vector<bool> blocked(nodes);
+  for (NodeId node = 1; node < nodes; ++node) blocked[node] = rng.below(8) == 0;
+  std::vector<double> prizes;
+  const std::uint32_t kind = rng.below(3);
+  for (NodeId node = 0; node < nodes && kind > 0; ++node) {
+    prizes.push_back(kind == 1 ? 0.5 * rng.below(7) : rng.uniform());
+  }
+  World world("random", Graph::from_edges(nodes, edges, directed ? EdgeKind::kDirected : EdgeKind::kUndirected),
+              blocked, {}, prizes);
+  const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
+  Task task{.view = world, .start = start, .budget = (weights == 2 ? 0.25 : 0.5) * rng.below(28)};
+  const std::uint32_t end = rng.below(4);
+  if (end == 0) task.end = start;
+  if (end == 1) task.end = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
+  if (rng.below(4) == 0) {
+    task.visited = NodeSet(nodes);
+    task.visited.insert(start);
+    for (const NodeId node : world.valid_nodes()) {
+      if (rng.below(3) == 0) task.visited.insert(node);
+    }
+  }
+  return task;
+}
+
+bool has_walk(const Task& task) {
+  try {
+    check(task);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+TEST(LpBound, IsTheOptimumOnRandomWorlds) {
+  if (!has_lp_bound()) GTEST_SKIP() << "built without CLP";
+  Rng rng(21);
+  int compared = 0;
+  int tight = 0;
+  int tight_before = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    SCOPED_TRACE(i);
+    const Task task = random_task(rng);
+    if (!has_walk(task)) continue;
+    ++compared;
+    const auto walk = exact_walk(task);
+    ASSERT_TRUE(walk);
+    const double optimum = plan_of_walk(task, *walk).prize;
+    const double quick = max_prize(task);
+    tight_before += quick <= optimum * (1 + 1e-9);
+    const auto lp = make_lp_bound(task, kNoLimit);
+    lp->cut(0, {});
+    ASSERT_GE(lp->bound(), optimum * (1 - kPrizeRounding));
+    tight += std::min(lp->bound(), quick) <= optimum * (1 + 1e-9);
+    // From nothing, from something worse, or from the best.
+    const double known = std::vector<double>{0, NearestPlanner().plan(task).prize, optimum}[rng.below(3)];
+    lp->branch(known, {});
+    ASSERT_NEAR(lp->bound(), optimum, 1e-8);
+    if (known >= optimum * (1 - 1e-9)) continue;
+    ASSERT_FALSE(lp->walk().empty());
+    const Plan found = plan_of_walk(task, lp->walk());
+    ASSERT_LE(found.cost, task.limit());
+    ASSERT_NEAR(found.prize, optimum, 1e-8);
+    ASSERT_TRUE(task.ends_anywhere() || found.walk.back() == task.end);
+  }
+  EXPECT_GT(compared, 3'000);
+  EXPECT_GT(tight, tight_before + (compared - tight_before) / 2) << "the root is loose";
+  RecordProperty("tight", tight);
+}
+
+}  // namespace
+}  // namespace graphdrl
