@@ -87,7 +87,7 @@ TEST(Compare, NamesPoliciesOfOneStemByTheirPaths) {
 
 TEST(Compare, LeavesOutWhatIsOutOfReach) {
   std::vector<World> worlds;
-  worlds.emplace_back("long", GridMap{.rows = 1, .cols = 70, .blocked = std::vector<bool>(70)});
+  worlds.emplace_back("long", GridMap{.rows = 1, .cols = 5'000, .blocked = std::vector<bool>(5'000)});
   worlds.push_back(grid_world("...\n"));
   const Comparison result = compare(worlds, {.policies = {"exact", "nearest"}, .budget = Budget::parse("1.0x")});
   EXPECT_FALSE(result.rows[0].coverage);
@@ -95,7 +95,7 @@ TEST(Compare, LeavesOutWhatIsOutOfReach) {
   EXPECT_EQ(result.overall[0].maps, 1);
   EXPECT_TRUE(result.overall[0].ratio_to_optimum);
   EXPECT_FALSE(result.overall[1].ratio_to_optimum);
-  EXPECT_EQ(result.rows[2].budget, 70);
+  EXPECT_EQ(result.rows[2].budget, 5'000);
   EXPECT_THAT(format_comparison(result), HasSubstr("optimum –: not computed for maps of more than 25 valid nodes"));
   EXPECT_THAT(format_comparison(result), HasSubstr("mean –: the policy's search is out of reach on that map"));
 }

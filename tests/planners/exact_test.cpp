@@ -68,7 +68,8 @@ TEST(ExactSearch, CountsOnlyWhatItCanReach) {
 TEST(ExactSearch, SaysWhenItIsOutOfReach) {
   const World world = grid_world(std::string(65, '.') + "\n");
   EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 100}), std::nullopt);
-  Episode episode(world, {.budget = 100});
+  const World large = grid_world(std::string(5'000, '.') + "\n");
+  Episode episode(large, {.budget = 100});
   episode.reset(0);
   const Observation observation = episode.observation();
   int action = 0;

@@ -6,6 +6,7 @@
 
 #include "graphdrl/graph/search.h"
 #include "graphdrl/planners/exact_search.h"
+#include "graphdrl/planners/lp_bound.h"
 
 namespace graphdrl {
 
@@ -79,22 +80,31 @@ std::optional<std::vector<NodeId>> exact_walk(const Task& task, Deadline deadlin
 
 Plan ExactPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
   check(task);
-  Plan fallback;
-  if (deadline) {
-    fallback = plan_of_walk(task, straight_walk(task));
-    if (fallback_ != nullptr && task.ends_anywhere() && !task.view.has_prizes()) {
-      const auto now = std::chrono::steady_clock::now();
-      fallback = fallback_->plan(task, now + (*deadline - now) / 2, report);
+  const auto half = [&]() -> Deadline {
+    if (!deadline) return std::nullopt;
+    const auto now = std::chrono::steady_clock::now();
+    return now + (*deadline - now) / 2;
+  };
+  if (auto walk = exact_walk(task, half())) return plan_of_walk(task, *std::move(walk), /*optimal=*/true);
+  const auto lp = make_lp_bound(task, kNoLimit);
+  if (lp != nullptr || deadline) {
+    Plan best =
+        incumbent_ == nullptr ? plan_of_walk(task, straight_walk(task)) : incumbent_->plan(task, half(), report);
+    if (best.optimal) return best;
+    if (lp != nullptr) {
+      const LpBound::Effort effort{.deadline = deadline, .work = deadline ? kNoLimit : kExactMaxWork};
+      lp->cut(best.prize, effort);
+      lp->branch(best.prize, effort);
+      improve(*lp, task, best);
     }
-    if (fallback.optimal) return fallback;
+    if (best.optimal || deadline || planning_stopped()) return best;
   }
-  if (auto walk = exact_walk(task, deadline)) return plan_of_walk(task, *std::move(walk), /*optimal=*/true);
-  if (deadline) return fallback;
   const std::size_t reached = SmallWorld(task).nodes.size();
   const bool many = reached > kExactMaxNodes;
   throw SearchOutOfReach(
       {.what = "exact search is out of reach",
-       .expected = fmt::format("at most {} nodes in reach and {} states", kExactMaxNodes, kExactMaxStates),
+       .expected = fmt::format("at most {} nodes in reach and {} states{}", kExactMaxNodes, kExactMaxStates,
+                               has_lp_bound() ? ", or a proof by branch and cut" : ""),
        .got =
            many ? fmt::format("more than {} nodes", kExactMaxNodes) : fmt::format("{} nodes, too many states", reached),
        .where = task.view.name()});

@@ -23,6 +23,7 @@ namespace graphdrl {
 
 inline constexpr int kExactMaxNodes = 64;                  // valid nodes that the budget reaches: a set is one word
 inline constexpr std::size_t kExactMaxStates = 2'000'000;  // then a search gives up
+inline constexpr double kExactMaxWork = 2e9;               // of branch and cut: about a minute [LpBound::Effort]
 
 class SearchOutOfReach : public Error {
  public:
@@ -36,16 +37,17 @@ std::optional<double> exact_prize(const Task& task);
 // The optimal walk. Empty where out of reach or past the deadline.
 std::optional<std::vector<NodeId>> exact_walk(const Task& task, Deadline deadline = {});
 
-// Throws SearchOutOfReach. With a deadline, another planner has half the time first, and gives the walk where the
-// search is out of reach or the time up.
+// Searches as above, and where that is out of reach by branch and cut [LpBound] from another planner's walk, which then
+// need not be the cheapest of those worth the same. Throws SearchOutOfReach where neither ends within its limits. With
+// a deadline the three share the time, and the best walk is given once it is up.
 class ExactPlanner final : public Planner {
  public:
-  explicit ExactPlanner(std::unique_ptr<Planner> fallback = nullptr) : fallback_(std::move(fallback)) {}
+  explicit ExactPlanner(std::unique_ptr<Planner> incumbent = nullptr) : incumbent_(std::move(incumbent)) {}
 
   Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
 
  private:
-  std::unique_ptr<Planner> fallback_;
+  std::unique_ptr<Planner> incumbent_;
 };
 
 }  // namespace graphdrl

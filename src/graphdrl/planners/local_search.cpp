@@ -9,6 +9,7 @@
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/bound.h"
+#include "graphdrl/planners/lp_bound.h"
 
 namespace graphdrl {
 namespace {
@@ -18,15 +19,23 @@ using std::chrono::steady_clock;
 constexpr int kChains = 2;                  // without a deadline, whatever the number of threads
 constexpr double kStartShare = 0.05;        // of the time left, for each walk to start with but the first two
 constexpr double kExplorerVisitS = 0.4e-3;  // a first visit of the explorer: it is not begun where it would not end
-constexpr double kBoundShare = 0.05;
-constexpr int kShortRuns = 8;        // where the choice matters, before a long one from the best of them
-constexpr double kShortShare = 0.6;  // of the schedule, for all short ones
-constexpr int kStepsPerLook = 16;    // at the clock; a step takes some microseconds
+constexpr double kBoundShare = 0.05;        // of the time left, for the knapsack bound, and again for the root's
+constexpr double kRootWork = 5e6;           // without a deadline, of the linear program: about 0.1 s
+constexpr double kBranchWork = 2e6;         // likewise, of branching once the search is over
+constexpr double kStepS = 5e-6;             // a step takes about as long
+constexpr double kLongTime = 4;             // in searches of so many steps: then branching has as much
+constexpr int kShortRuns = 8;               // where the choice matters, before a long one from the best of them
+constexpr double kShortShare = 0.6;         // of the schedule, for all short ones
+constexpr int kStepsPerLook = 16;           // at the clock; a step takes some microseconds
 
 Deadline share_of(Deadline deadline, double share) {
   if (!deadline) return std::nullopt;
   const auto now = steady_clock::now();
   return now + std::chrono::duration_cast<steady_clock::duration>(share * (*deadline - now));
+}
+
+double seconds_to(std::chrono::steady_clock::time_point time) {
+  return std::chrono::duration<double>(time - steady_clock::now()).count();
 }
 
 bool is_met(double bound, double prize) {
@@ -148,9 +157,36 @@ Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report&
   Plan best = nearest.plan(task, deadline, report);
   const Targets targets(task, deadline);
   best.bound = std::min(max_prize(task, share_of(deadline, kBoundShare)), targets.total_prize());
+  std::unique_ptr<LpBound> lp;
+  if (!is_met(best.bound, best.prize) && !passed(deadline)) lp = make_lp_bound(task, best.bound);
+  if (lp != nullptr) {
+    lp->cut(best.prize, {.deadline = share_of(deadline, kBoundShare), .work = deadline ? kNoLimit : kRootWork});
+    best.bound = std::min(best.bound, lp->bound());
+  }
   best = best_start(task, targets, std::move(best), deadline, report);
-  if (!is_met(best.bound, best.prize) && targets.complete() && targets.end() > 1 && !passed(deadline)) {
-    best = improve(task, targets, std::move(best), deadline, report);
+  const auto search = [&](std::int64_t steps) {
+    if (is_met(best.bound, best.prize) || !targets.complete() || targets.end() <= 1 || passed(deadline)) return;
+    best = improve(task, targets, std::move(best), steps, deadline, report);
+  };
+  const auto branch = [&](const LpBound::Effort& effort) {
+    if (lp == nullptr || is_met(best.bound, best.prize)) return;
+    lp->branch(best.prize, effort);
+    graphdrl::improve(*lp, task, best);
+  };
+  std::int64_t steps = default_iterations(targets.end());
+  if (!deadline || options_.iterations > 0) {
+    search(options_.iterations > 0 ? options_.iterations : steps);
+    branch({.deadline = deadline, .work = kBranchWork});
+  } else {
+    // Both in turn, longer and longer, while there is time for more than the next turn: the last search has the rest.
+    while (lp != nullptr && !is_met(best.bound, best.prize) &&
+           seconds_to(*deadline) > kLongTime * kStepS * static_cast<double>(steps)) {
+      const auto begin = steady_clock::now();
+      search(steps);
+      branch({.deadline = steady_clock::now() + (steady_clock::now() - begin)});
+      steps *= 2;
+    }
+    search(0);
   }
   best.optimal = best.optimal || is_met(best.bound, best.prize);
   return best;
@@ -173,16 +209,15 @@ Plan LocalSearchPlanner::best_start(const Task& task, const Targets& targets, Pl
   return best;
 }
 
-Plan LocalSearchPlanner::improve(const Task& task, const Targets& targets, Plan best, Deadline deadline,
-                                 const Report& report) {
+// In so many steps, or until the deadline where that is 0, or both.
+Plan LocalSearchPlanner::improve(const Task& task, const Targets& targets, Plan best, std::int64_t steps,
+                                 Deadline deadline, const Report& report) {
   const Stops start = stops_of(task, targets, best);
   // What comes after the last step takes about as long as this.
   const auto before = steady_clock::now();
   walk_of(task, targets, start.order);
   if (deadline) *deadline -= 2 * (steady_clock::now() - before);
   const int chains = deadline ? threads() : kChains;
-  std::int64_t steps = options_.iterations;
-  if (steps == 0 && !deadline) steps = default_iterations(targets.end());
   const CoolingSchedule schedule((steps + chains - 1) / chains, deadline);
   const auto caller = std::this_thread::get_id();
   const int visited = task.visited_before().count() + (targets.prize(targets.end()) > 0 ? 1 : 0);

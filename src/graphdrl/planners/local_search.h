@@ -22,8 +22,9 @@ std::int64_t default_iterations(int targets);
 // Ruin and recreate [Schrimpf et al. 2000; strings as in Christiaens and Vanden Berghe 2020] with 2-opt [Croes 1958],
 // under simulated annealing [Kirkpatrick, Gelatt and Vecchi 1983]; docs/search.md says how. Begins with the best of
 // nearest, depth first, beam and explorer, each as far as it ends within its share of the time, and is never worse than
-// the best of these. Chains with seeds of their own run side by side. Without a deadline the walk depends on the task
-// and the options alone, not on the number of threads.
+// the best of these. Stops where the bound is met, which a linear program's root tightens first; where there is time,
+// branch and cut [LpBound] goes on in between. Chains with seeds of their own run side by side. Without a deadline the
+// walk depends on the task and the options alone, not on the number of threads.
 class LocalSearchPlanner final : public Planner {
  public:
   LocalSearchPlanner(LocalSearchOptions options, std::unique_ptr<Planner> explorer)
@@ -34,7 +35,8 @@ class LocalSearchPlanner final : public Planner {
 
  private:
   Plan best_start(const Task& task, const Targets& targets, Plan best, Deadline deadline, const Report& report);
-  Plan improve(const Task& task, const Targets& targets, Plan best, Deadline deadline, const Report& report);
+  Plan improve(const Task& task, const Targets& targets, Plan best, std::int64_t steps, Deadline deadline,
+               const Report& report);
 
   LocalSearchOptions options_;
   std::unique_ptr<Planner> explorer_;

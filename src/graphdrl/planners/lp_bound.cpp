@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <queue>
 
 #include "graphdrl/planners/walk_relaxation.h"
@@ -86,8 +85,11 @@ void BranchAndCut::cut(double prize, Effort effort) {
   for (int tired = 0; tired < kPatience && !beaten(bound_) && !spent(effort, before);) {
     const Outcome outcome = program().solve(effort.deadline);
     bound_ = std::min(bound_, rounded(program().bound()));
-    if (outcome != Outcome::kOptimal || relaxation_.separate() == 0) break;
-    tired = last - program().bound() < kLeastFall * scale ? tired + 1 : 0;
+    if (outcome != Outcome::kOptimal) break;
+    const bool falls = last - program().bound() >= kLeastFall * scale;
+    if (falls) relaxation_.remove_slack_rows();
+    if (relaxation_.separate() == 0) break;
+    tired = falls ? 0 : tired + 1;
     last = std::min(last, program().bound());
   }
 }
@@ -151,8 +153,6 @@ void BranchAndCut::branch(double prize, Effort effort) {
   const std::int64_t before = program().work();
   if (!begun_) parts_.push({bound_, kNoLimit, 0, {}});
   begun_ = true;
-  const bool verbose = std::getenv("LP_VERBOSE") != nullptr;
-  int count = 0;
   while (!beaten(bound_) && !spent(effort, before)) {
     if (parts_.empty() || beaten(parts_.top().bound)) {
       bound_ = prize_;
@@ -163,11 +163,6 @@ void BranchAndCut::branch(double prize, Effort effort) {
     parts_.pop();
     relaxation_.remove_slack_rows();
     const Outcome outcome = solve_part(part, effort);
-    ++count;
-    if (verbose && count % 50 == 0) {
-      fprintf(stderr, "%d parts open %zu bound %g depth %d est %g rows %d prize %g\n", count, parts_.size(), bound_,
-              part.depth, part.estimate, program().rows(), prize_);
-    }
     if (outcome == Outcome::kInfeasible || beaten(part.bound)) continue;
     if (outcome == Outcome::kStopped) {
       parts_.push(std::move(part));
@@ -187,7 +182,6 @@ void BranchAndCut::branch(double prize, Effort effort) {
       parts_.push(std::move(child));
     }
   }
-  if (verbose) fprintf(stderr, "%d parts, open %zu, bound %g, prize %g\n", count, parts_.size(), bound_, prize_);
 }
 
 }  // namespace

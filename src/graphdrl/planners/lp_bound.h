@@ -5,7 +5,9 @@
 // that the bound falls as parts are done, and columns that could not matter any more are fixed by their reduced costs.
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "graphdrl/planners/plan.h"
@@ -37,6 +39,14 @@ class LpBound {
 // bound: one known. Empty where the graph has too many edges, or in a build without CLP.
 // Throws Error where there is no walk at all [check(Task)].
 std::unique_ptr<LpBound> make_lp_bound(const Task& task, double bound);
+
+// Puts the bound and the walk, where it has one, into a plan that is not as good.
+inline void improve(const LpBound& lp, const Task& task, Plan& plan) {
+  const double bound = std::min(plan.bound, lp.bound());
+  if (!lp.walk().empty()) plan = better_of(std::move(plan), plan_of_walk(task, lp.walk()));
+  plan.bound = bound;
+  plan.optimal = plan.optimal || plan.prize >= bound * (1 - kPrizeRounding);
+}
 
 // Whether this build has CLP.
 bool has_lp_bound();

@@ -34,7 +34,8 @@ const std::map<std::string, PlannerFactory>& planners() {
       {"explorer", [] { return make_explorer(builtin_explorer()); }},
       {"exact",
        []() -> std::unique_ptr<Planner> {
-         return std::make_unique<ExactPlanner>(std::make_unique<BeamPlanner>(BeamOptions()));
+         return std::make_unique<ExactPlanner>(
+             std::make_unique<LocalSearchPlanner>(LocalSearchOptions(), make_explorer(builtin_explorer())));
        }},
   };
   return table;

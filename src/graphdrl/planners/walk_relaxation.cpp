@@ -287,7 +287,7 @@ void WalkRelaxation::separate_parity() {
     });
     if (tried.insert(component).second) separate_parity_of(component);
   }
-  separate_parity_cuts();
+  if (found_.empty()) separate_parity_cuts();
 }
 
 // S from the minimum cuts between nodes, by how far values are from whole numbers: if any row is violated, then one of
