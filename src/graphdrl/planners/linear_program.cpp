@@ -83,12 +83,13 @@ void LinearProgram::set_bounds(int column, double lower, double upper) {
 LinearProgram::Outcome LinearProgram::solve(Deadline deadline) {
   ClpSimplex& model = solver_->model;
   static_cast<DeadlineHandler*>(model.eventHandler())->deadline = deadline;
-  run_dual();
+  const int most_iterations = std::max(kFewestIterations, kIterationsPerRow * model.numberRows());
+  run_dual(most_iterations);
   if (model.status() == kPrimalInfeasible) {
     if (proves_infeasible()) return Outcome::kInfeasible;
     // The weights of a warm start are at times those of a solve before.
     model.allSlackBasis(true);
-    run_dual();
+    run_dual(most_iterations);
     if (model.status() == kPrimalInfeasible && proves_infeasible()) return Outcome::kInfeasible;
   }
   values_.assign(model.primalColumnSolution(), model.primalColumnSolution() + model.numberColumns());
@@ -96,10 +97,27 @@ LinearProgram::Outcome LinearProgram::solve(Deadline deadline) {
   return model.status() == 0 ? Outcome::kOptimal : Outcome::kStopped;
 }
 
-void LinearProgram::run_dual() {
+double LinearProgram::probe(int column, double lower, double upper, int iterations) {
+  ClpSimplex& model = solver_->model;
+  const std::vector<unsigned char> status(model.statusArray(),
+                                          model.statusArray() + model.numberRows() + model.numberColumns());
+  const std::vector<double> reduced_costs = reduced_costs_;
+  const double before_lower = this->lower(column);
+  const double before_upper = this->upper(column);
+  model.setColumnBounds(column, lower, upper);
+  run_dual(iterations);
+  const bool impossible = model.status() == kPrimalInfeasible && proves_infeasible();
+  const double bound = impossible ? -kUnbounded : std::min(bound_, bound_by(model.dualRowSolution(), true));
+  model.setColumnBounds(column, before_lower, before_upper);
+  std::copy(status.begin(), status.end(), model.statusArray());
+  reduced_costs_ = reduced_costs;
+  return bound;
+}
+
+void LinearProgram::run_dual(int most_iterations) {
   ClpSimplex& model = solver_->model;
   model.setNumberIterations(0);
-  model.setMaximumIterations(std::max(kFewestIterations, kIterationsPerRow * model.numberRows()));
+  model.setMaximumIterations(most_iterations);
   model.dual();
   work_ += std::int64_t{kOverhead + model.numberIterations()} * (model.numberRows() + model.numberColumns());
 }

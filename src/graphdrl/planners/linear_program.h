@@ -51,6 +51,10 @@ class LinearProgram {
   // Dual simplex. Cost: what the iterations cost, each about linear in rows and columns.
   Outcome solve(Deadline deadline);
 
+  // The bound after so many iterations with other bounds of a column; kUnbounded below zero where there is no solution.
+  // Leaves everything as the last solve did. REQUIRES: that solve was optimal.
+  double probe(int column, double lower, double upper, int iterations);
+
   int columns() const;
   int rows() const;
   double lower(int column) const;
@@ -69,7 +73,7 @@ class LinearProgram {
  private:
   struct Solver;
 
-  void run_dual();
+  void run_dual(int most_iterations);
   bool proves_infeasible();
   // Computes the bound that weights of the rows prove, and the reduced costs. with_objective: else of 0.
   double bound_by(const double* duals, bool with_objective);

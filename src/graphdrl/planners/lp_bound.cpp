@@ -141,7 +141,7 @@ Outcome BranchAndCut::solve_part(Part& part, const Effort& effort) {
     part.bound = std::min(part.bound, rounded(part.estimate));
     if (outcome != Outcome::kOptimal || beaten(part.bound)) return outcome;
     if (round >= kRoundsOfCuts || last - part.estimate < kLeastFall * scale) {
-      if (!relaxation_.branches().first.empty()) return outcome;
+      if (!relaxation_.integral()) return outcome;
     }
     last = part.estimate;
     if (relaxation_.separate() == 0) return outcome;
@@ -168,13 +168,13 @@ void BranchAndCut::branch(double prize, Effort effort) {
       parts_.push(std::move(part));
       break;
     }
-    const WalkRelaxation::Branches branches = relaxation_.branches();
-    if (branches.first.empty()) {
+    if (relaxation_.integral()) {
       take_walk();
       if (!beaten(part.bound)) break;
       continue;
     }
     fix_by_reduced_costs(part.changes);
+    const WalkRelaxation::Branches branches = relaxation_.branches();
     for (const auto& changes : {branches.first, branches.second}) {
       Part child = part;
       ++child.depth;

@@ -11,6 +11,8 @@
 namespace graphdrl {
 namespace {
 
+constexpr int kProbed = 8;              // columns to try branching on
+constexpr int kProbeIterations = 30;    // each way
 constexpr double kViolation = 1e-4;     // less is not worth a row
 constexpr double kIntegral = 1e-5;      // what is as near to a whole number is one
 constexpr double kStepRounding = 1e-6;  // of a step, in which costs and prizes add up
@@ -446,7 +448,13 @@ void WalkRelaxation::add_connection_row(int node) {
   row.add(visit_[node], directed_ ? -1 : -2);
 }
 
-WalkRelaxation::Branches WalkRelaxation::branches() const {
+bool WalkRelaxation::integral() const {
+  const auto values = program_.values();
+  return std::all_of(values.begin(), values.end(),
+                     [](double part) { return std::abs(part - std::round(part)) <= kIntegral; });
+}
+
+WalkRelaxation::Branches WalkRelaxation::branches() {
   Branches result;
   // First, half of the ends.
   std::vector<int> ends;
@@ -469,32 +477,41 @@ WalkRelaxation::Branches WalkRelaxation::branches() const {
     }
     return result;
   }
-  // Then a visit, then an edge: what is least integral.
-  const auto split_at = [&](int column) {
-    const double down = std::floor(value(column) + kIntegral);
-    result.first = {{column, down + 1, program_.upper(column)}};
-    result.second = {{column, program_.lower(column), down}};
+  // Then visits and edges: of those least integral, what lowers both bounds.
+  struct Candidate {
+    int column;
+    double fraction;
   };
-  const auto least_integral = [&](const std::vector<int>& columns) {
-    int found = -1;
-    double most = kIntegral;
-    for (const int column : columns) {
-      const double fraction = std::abs(value(column) - std::round(value(column)));
-      if (fraction > most) {
-        most = fraction;
-        found = column;
-      }
-    }
-    if (found >= 0) split_at(found);
-    return found >= 0;
+  std::vector<Candidate> candidates;
+  const auto add = [&](int column) {
+    const double fraction = std::abs(value(column) - std::round(value(column)));
+    if (fraction > kIntegral) candidates.push_back({column, fraction});
   };
-  if (least_integral(visit_)) return result;
-  std::vector<int> uses;
+  for (const int column : visit_) add(column);
   for (const Arc& arc : arcs_) {
-    uses.push_back(arc.once);
-    if (arc.twice >= 0) uses.push_back(arc.twice);
+    add(arc.once);
+    if (arc.twice >= 0) add(arc.twice);
   }
-  least_integral(uses);
+  if (candidates.empty()) return result;
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& one, const Candidate& other) { return one.fraction > other.fraction; });
+  if (std::ssize(candidates) > kProbed) candidates.resize(kProbed);
+  const double now = program_.bound();
+  double best_score = -1;
+  for (const Candidate& candidate : candidates) {
+    const int column = candidate.column;
+    const double down = std::floor(value(column) + kIntegral);
+    const std::vector<Change> above = {{column, down + 1, program_.upper(column)}};
+    const std::vector<Change> below = {{column, program_.lower(column), down}};
+    const auto fall = [&](const Change& change) {
+      return std::min(1e3, now - program_.probe(change.column, change.lower, change.upper, kProbeIterations));
+    };
+    const double score = candidates.size() == 1 ? 0 : (fall(above[0]) + 1e-3) * (fall(below[0]) + 1e-3);
+    if (score <= best_score) continue;
+    best_score = score;
+    result.first = above;
+    result.second = below;
+  }
   return result;
 }
 

@@ -52,8 +52,10 @@ class WalkRelaxation {
   void remove_slack_rows() { program_.remove_slack_rows(fixed_rows_); }
   // Adds rows that the last solution violates. Their number.
   int separate();
-  // Two parts without the last solution, which together hold every walk; empty ones where it is integral.
-  Branches branches() const;
+  // Of the last solution.
+  bool integral() const;
+  // Two parts without the last solution, which together hold every walk. REQUIRES: it is optimal and not integral.
+  Branches branches();
   // The walk that an integral solution is, once it violates no row.
   std::vector<NodeId> walk() const;
 
