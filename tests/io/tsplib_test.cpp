@@ -55,6 +55,15 @@ TEST(Tsplib, ReadsAnOrienteeringProblem) {
   EXPECT_EQ(graph.without({false, true, false, false}).edge_count(), 3);
 }
 
+TEST(Tsplib, SkipsWhatChangesNothing) {
+  const std::string more =
+      "COMMENT : more\nTSPSOL : 7\nNODE_COORD_TYPE : TWOD_COORDS\nDISPLAY_DATA_TYPE : "
+      "COORD_DISPLAY\nEDGE_WEIGHT_FORMAT : "
+      "FUNCTION\n";
+  EXPECT_EQ(parse(more + kHeader + kPlaces + kScores + kDepot).graph.max_cost(), 5);
+  EXPECT_TRUE(is_tsplib(more.substr(more.find("TSPSOL"))));
+}
+
 // Lengths of edges that TSPLIB's own instances have: burma14 from 1 to 2, att48 from 1 to 2 and from 1 to 3.
 TEST(Tsplib, ComputesTheDistancesOfTsplib) {
   const auto cost = [](const std::string& type, const std::string& one, const std::string& other) {
@@ -110,6 +119,11 @@ TEST(Tsplib, SaysWhatIsWrong) {
       {replaced(whole, " 2\n -1", " 2 3\n -1"), "more than one depot"},
       {replaced(whole, " 2\n -1", " -1"), "names no depot"},
       {replaced(whole, "NODE_SCORE", "NODE_SCARE"), "an unknown section"},
+      {replaced(whole, "COMMENT", "COMMENTS"), "four.oplib:3: an unknown keyword: got 'COMMENTS'"},
+      {replaced(whole, "COST_LIMIT", "Cost_Limit"), "four.oplib:5: an unknown keyword: got 'Cost_Limit'"},
+      {replaced(whole, "1 0 0\n", "1 0 0\n2 0 0\n"), "four.oplib:12: an unknown keyword: got '4'"},
+      {replaced(whole, "TYPE : OP\n", "TYPE : OP\nTYPE : TSP\n"), "four.oplib:3: TYPE comes twice"},
+      {replaced(whole, "DEPOT_SECTION", kScores + "DEPOT_SECTION"), "four.oplib:17: NODE_SCORE_SECTION comes twice"},
       {whole.substr(0, whole.find("-1")), "the file ends within DEPOT_SECTION"},
       {whole.substr(0, whole.find("4 5\n")), "the file ends within NODE_SCORE_SECTION"},
   };

@@ -14,8 +14,17 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::array<std::string_view, 6> kFirstKeywords = {"NAME",      "TYPE",       "COMMENT",
-                                                            "DIMENSION", "COST_LIMIT", "EDGE_WEIGHT_TYPE"};
+// Of the header. TSPSOL, the length of a tour, stands in files of OPLib.
+constexpr std::array<std::string_view, 10> kKeywords = {"NAME",
+                                                        "TYPE",
+                                                        "COMMENT",
+                                                        "DIMENSION",
+                                                        "COST_LIMIT",
+                                                        "EDGE_WEIGHT_TYPE",
+                                                        "EDGE_WEIGHT_FORMAT",
+                                                        "NODE_COORD_TYPE",
+                                                        "TSPSOL",
+                                                        "DISPLAY_DATA_TYPE"};
 constexpr NodeId kMostNodes = 100'000;
 constexpr NodeId kMostExplicit = 20'000;  // a matrix of 3 GB
 constexpr std::string_view kSpace = " \t\r\n";
@@ -24,6 +33,10 @@ struct Point {
   double x;
   double y;
 };
+
+bool is_keyword(std::string_view word) {
+  return std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
+}
 
 enum class Distance { kEuclidean, kCeiling, kGeographic, kPseudoEuclidean };
 
@@ -92,8 +105,14 @@ class TsplibReader {
   }
 
  private:
+  // Of the file as a whole.
   [[noreturn]] void fail(const std::string& what, const std::string& got = {}) const {
     throw Error({.what = what, .got = got, .where = source_});
+  }
+  // Of the line read last.
+  [[noreturn]] void fail_here(const std::string& what, const std::string& got = {}) const {
+    const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+    throw Error({.what = what, .got = got, .where = fmt::format("{}:{}", source_, line)});
   }
 
   bool skip_space() {
@@ -119,9 +138,9 @@ class TsplibReader {
     double value = 0;
     if (found.starts_with('+')) found.remove_prefix(1);
     const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
-    if (found.empty()) fail(fmt::format("the file ends within {}", where));
+    if (found.empty()) fail_here(fmt::format("the file ends within {}", where));
     if (error != std::errc() || end != found.data() + found.size() || !std::isfinite(value)) {
-      fail(fmt::format("not a number in {}", where), in_quotes(found));
+      fail_here(fmt::format("not a number in {}", where), in_quotes(found));
     }
     return value;
   }
@@ -129,7 +148,7 @@ class TsplibReader {
   NodeId node(std::string_view where) {
     const double value = number(where);
     if (value == std::floor(value) && value >= 1 && value <= nodes_) return static_cast<NodeId>(value) - 1;
-    fail(fmt::format("no such node in {}: nodes are 1 to {}", where, nodes_), fmt::format("'{:g}'", value));
+    fail_here(fmt::format("no such node in {}: nodes are 1 to {}", where, nodes_), fmt::format("'{:g}'", value));
   }
 
   // A line of the header or a section; false at the end.
@@ -138,23 +157,24 @@ class TsplibReader {
     if (keyword == "EOF") return false;
     if (keyword.ends_with("_SECTION")) {
       value_of_line();
-      if (nodes_ == 0) fail(fmt::format("{} comes before DIMENSION", keyword));
-      if (!header_.try_emplace(keyword).second) fail(fmt::format("{} comes twice", keyword));
+      if (nodes_ == 0) fail_here(fmt::format("{} comes before DIMENSION", keyword));
+      if (!header_.try_emplace(keyword).second) fail_here(fmt::format("{} comes twice", keyword));
       read_section(keyword);
       return true;
     }
+    if (!is_keyword(keyword)) fail_here("an unknown keyword", in_quotes(keyword));
     const std::string_view value = value_of_line();
     if (!header_.try_emplace(keyword, value).second && keyword != "COMMENT")
-      fail(fmt::format("{} comes twice", keyword));
+      fail_here(fmt::format("{} comes twice", keyword));
     if (keyword == "DIMENSION") {
       const double count = to_number(value, keyword);
       if (!(count >= 1 && count <= kMostNodes && count == std::floor(count))) {
-        fail(fmt::format("bad DIMENSION: a number of nodes from 1 to {}", kMostNodes), in_quotes(value));
+        fail_here(fmt::format("bad DIMENSION: a number of nodes from 1 to {}", kMostNodes), in_quotes(value));
       }
       nodes_ = static_cast<NodeId>(count);
     } else if (keyword == "COST_LIMIT") {
       const double limit = to_number(value, keyword);
-      if (limit < 0) fail("a negative COST_LIMIT", in_quotes(value));
+      if (limit < 0) fail_here("a negative COST_LIMIT", in_quotes(value));
       task_.budget = limit;
     }
     return true;
@@ -175,32 +195,33 @@ class TsplibReader {
       for (NodeId i = 0; i < nodes_; ++i) {
         double& prize = prizes_[node(name)];
         prize = number(name);
-        if (prize < 0) fail("a negative score in NODE_SCORE_SECTION", fmt::format("'{:g}'", prize));
+        if (prize < 0) fail_here("a negative score in NODE_SCORE_SECTION", fmt::format("'{:g}'", prize));
       }
-      if (std::find(prizes_.begin(), prizes_.end(), -1) != prizes_.end()) fail("a node without a score");
+      if (std::find(prizes_.begin(), prizes_.end(), -1) != prizes_.end()) fail_here("a node without a score");
     } else if (name == "DEPOT_SECTION") {
       for (std::string_view found = word(); found != "-1"; found = word()) {
         const double value = to_number(found, name);
-        if (task_.start != kNoNode) fail("more than one depot");
-        if (!(value >= 1 && value <= nodes_ && value == std::floor(value))) fail("no such depot", in_quotes(found));
+        if (task_.start != kNoNode) fail_here("more than one depot");
+        if (!(value >= 1 && value <= nodes_ && value == std::floor(value)))
+          fail_here("no such depot", in_quotes(found));
         task_.start = task_.end = static_cast<NodeId>(value) - 1;
       }
     } else if (name == "EDGE_WEIGHT_SECTION") {
       read_matrix();
     } else {
-      fail("an unknown section", in_quotes(name));
+      fail_here("an unknown section", in_quotes(name));
     }
   }
 
   void read_matrix() {
     const auto count = static_cast<std::size_t>(nodes_);
-    if (nodes_ > kMostExplicit) fail(fmt::format("more than {} nodes in EDGE_WEIGHT_SECTION", kMostExplicit));
+    if (nodes_ > kMostExplicit) fail_here(fmt::format("more than {} nodes in EDGE_WEIGHT_SECTION", kMostExplicit));
     const std::string& format = header_["EDGE_WEIGHT_FORMAT"];
     const bool full = format == "FULL_MATRIX";
     const bool upper = format.starts_with("UPPER_");
     const bool diagonal = format.ends_with("_DIAG_ROW");
     if (!full && (!(upper || format.starts_with("LOWER_")) || !format.ends_with("_ROW"))) {
-      fail("bad EDGE_WEIGHT_FORMAT: FULL_MATRIX, or rows of one half", in_quotes(format));
+      fail_here("bad EDGE_WEIGHT_FORMAT: FULL_MATRIX, or rows of one half", in_quotes(format));
     }
     matrix_.assign(count * count, 0);
     for (std::size_t row = 0; row < count; ++row) {
@@ -208,9 +229,9 @@ class TsplibReader {
       const std::size_t end = full || upper ? count : row + (diagonal ? 1 : 0);
       for (std::size_t col = begin; col < end; ++col) {
         const double cost = number("EDGE_WEIGHT_SECTION");
-        if (cost < 0) fail("a negative cost in EDGE_WEIGHT_SECTION", fmt::format("'{:g}'", cost));
+        if (cost < 0) fail_here("a negative cost in EDGE_WEIGHT_SECTION", fmt::format("'{:g}'", cost));
         double& here = matrix_[row * count + col];  // of a full matrix, set when the other row was read
-        if (full && col < row && here != cost) fail("a matrix that is not symmetric");
+        if (full && col < row && here != cost) fail_here("a matrix that is not symmetric");
         here = matrix_[col * count + row] = cost;
       }
     }
@@ -268,8 +289,7 @@ class TsplibReader {
 
 bool is_tsplib(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-  const std::string_view keyword = text.substr(0, text.find_first_of(" \t\r\n:"));
-  return std::find(kFirstKeywords.begin(), kFirstKeywords.end(), keyword) != kFirstKeywords.end();
+  return is_keyword(text.substr(0, text.find_first_of(" \t\r\n:")));
 }
 
 GraphMap parse_tsplib(std::string_view text, const std::string& source) {
