@@ -151,6 +151,14 @@ class TsplibReader {
     fail_here(fmt::format("no such node in {}: nodes are 1 to {}", where, nodes_), fmt::format("'{:g}'", value));
   }
 
+  // Of a section that lists every node once.
+  NodeId next_node(std::string_view where, std::vector<bool>& listed) {
+    const NodeId found = node(where);
+    if (listed[found]) fail_here(fmt::format("node {} comes twice in {}", found + 1, where));
+    listed[found] = true;
+    return found;
+  }
+
   // A line of the header or a section; false at the end.
   bool read_entry() {
     const std::string keyword(word(" \t\r\n:"));
@@ -182,22 +190,22 @@ class TsplibReader {
 
   void read_section(const std::string& name) {
     const auto count = static_cast<std::size_t>(nodes_);
+    std::vector<bool> listed(count);
     if (name == "NODE_COORD_SECTION" || name == "DISPLAY_DATA_SECTION") {
       std::vector<Point> points(count);
       for (NodeId i = 0; i < nodes_; ++i) {
-        Point& point = points[node(name)];
+        Point& point = points[next_node(name, listed)];
         point.x = number(name);
         point.y = number(name);
       }
       if (name == "NODE_COORD_SECTION") points_ = std::move(points);
     } else if (name == "NODE_SCORE_SECTION") {
-      prizes_.assign(count, -1);
+      prizes_.resize(count);
       for (NodeId i = 0; i < nodes_; ++i) {
-        double& prize = prizes_[node(name)];
+        double& prize = prizes_[next_node(name, listed)];
         prize = number(name);
         if (prize < 0) fail_here("a negative score in NODE_SCORE_SECTION", fmt::format("'{:g}'", prize));
       }
-      if (std::find(prizes_.begin(), prizes_.end(), -1) != prizes_.end()) fail_here("a node without a score");
     } else if (name == "DEPOT_SECTION") {
       for (std::string_view found = word(); found != "-1"; found = word()) {
         const double value = to_number(found, name);
