@@ -1,5 +1,6 @@
 #include "graphdrl/io/tsplib.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -76,6 +77,10 @@ TEST(Tsplib, ComputesTheDistancesOfTsplib) {
   EXPECT_EQ(cost("ATT", "6734 1453", "5530 1424"), 381);
   EXPECT_EQ(cost("CEIL_2D", "0 0", "1 1"), 2);
   EXPECT_EQ(cost("EUC_2D", "0 0", "1 1"), 1);
+  EXPECT_EQ(cost("EUC_2D", "-1e15 0", "1e15 0"), 2e15);
+  for (const char* const type : {"EUC_2D", "CEIL_2D", "GEO", "ATT"}) {
+    EXPECT_THAT(error_of([&] { cost(type, "0 0", "1e200 0"); }), HasSubstr(":6: too large a number in NODE_COORD"));
+  }
 }
 
 TEST(Tsplib, ReadsMatricesInEveryForm) {
@@ -95,6 +100,10 @@ TEST(Tsplib, ReadsMatricesInEveryForm) {
   EXPECT_THAT(error_of([&] { read("FUNCTION", ""); }), HasSubstr("bad EDGE_WEIGHT_FORMAT"));
   EXPECT_THAT(error_of([&] { read("UPPER_ROW", "1 2"); }), HasSubstr("EDGE_WEIGHT_SECTION"));
   EXPECT_THAT(error_of([&] { read("UPPER_ROW", "1 -2 3"); }), HasSubstr("a negative cost"));
+  for (const char* const cost : {"1e999", "nan", "inf", "-inf"}) {
+    EXPECT_THAT(error_of([&] { read("UPPER_ROW", fmt::format("1 {} 3", cost)); }), HasSubstr("not a number in EDGE"));
+  }
+  EXPECT_THAT(error_of([&] { read("UPPER_ROW", "1 1e308 1e308"); }), HasSubstr("too large a number in EDGE"));
 }
 
 TEST(Tsplib, SaysWhatIsWrong) {
@@ -113,6 +122,7 @@ TEST(Tsplib, SaysWhatIsWrong) {
       {replaced(whole, "EUC_2D", "EXPLICIT"), "EDGE_WEIGHT_SECTION is missing"},
       {replaced(whole, ": OP", ": ATSP"), "bad TYPE"},
       {replaced(whole, "4 5\n", "4 -5\n"), "a negative score"},
+      {replaced(whole, "4 5\n", "4 1e308\n"), "too large a number in NODE_SCORE_SECTION: got '1e308'"},
       {replaced(whole, "4 5\n", "4 nan\n"), "not a number in NODE_SCORE_SECTION"},
       {replaced(whole, "4 5\n", "3 5\n"), "four.oplib:16: node 3 comes twice in NODE_SCORE_SECTION"},
       {replaced(whole, "4 0 0\n", "1 9 9\n"), "four.oplib:11: node 1 comes twice in NODE_COORD_SECTION"},

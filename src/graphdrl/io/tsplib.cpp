@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 10> kKeywords = {"NAME",
                                                         "DISPLAY_DATA_TYPE"};
 constexpr NodeId kMostNodes = 100'000;
 constexpr NodeId kMostExplicit = 20'000;  // a matrix of 3 GB
+constexpr double kMostNumber = 1e15;      // of places, costs and scores: distances stay whole, and sums finite
 constexpr std::string_view kSpace = " \t\r\n";
 
 struct Point {
@@ -142,9 +143,14 @@ class TsplibReader {
     if (error != std::errc() || end != found.data() + found.size() || !std::isfinite(value)) {
       fail_here(fmt::format("not a number in {}", where), in_quotes(found));
     }
+    return value + 0.0;  // turns -0 into 0
+  }
+  double number(std::string_view where) {
+    const std::string_view found = word();
+    const double value = to_number(found, where);
+    if (std::abs(value) > kMostNumber) fail_here(fmt::format("too large a number in {}", where), in_quotes(found));
     return value;
   }
-  double number(std::string_view where) { return to_number(word(), where); }
   NodeId node(std::string_view where) {
     const double value = number(where);
     if (value == std::floor(value) && value >= 1 && value <= nodes_) return static_cast<NodeId>(value) - 1;
