@@ -100,6 +100,16 @@ TEST(Compare, LeavesOutWhatIsOutOfReach) {
   EXPECT_THAT(format_comparison(result), HasSubstr("mean –: the policy's search is out of reach on that map"));
 }
 
+// A start without a prize, and a budget that pays for no move.
+TEST(Compare, ReachesTheOptimumWhereThatIsNothing) {
+  const std::vector<Edge> edges = {{0, 1, 2}};
+  const World world("poor", Graph::from_edges(2, edges), std::vector<bool>(2), {}, {0, 5}, {.budget = 1, .start = 0});
+  const Comparison result = compare({world}, {.policies = {"nearest"}, .episodes = 1});
+  EXPECT_EQ(result.rows[0].optimum, 0);
+  EXPECT_EQ(result.overall[0].mean, 0);
+  EXPECT_EQ(result.overall[0].ratio_to_optimum, 1);
+}
+
 TEST(Compare, RefusesBadOptions) {
   EXPECT_THAT(error_of([] { compare(paper_worlds(), {.policies = {"nearest"}, .episodes = 0}); }),
               HasSubstr("expected at least 1, got 0"));

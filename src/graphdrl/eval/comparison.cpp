@@ -186,7 +186,7 @@ ComparisonOverall summarise_rows(const std::string& policy, std::span<const Comp
     optimum_sum += row.optimum.value_or(0);
   }
   if (overall.maps > 0) overall.mean = sum / overall.maps;
-  if (overall.maps > 0 && all_known) overall.ratio_to_optimum = sum / optimum_sum;
+  if (overall.maps > 0 && all_known) overall.ratio_to_optimum = optimum_sum > 0 ? sum / optimum_sum : 1;
   return overall;
 }
 

@@ -48,9 +48,10 @@ struct ComparisonRow {
 
 struct ComparisonOverall {
   std::string policy;
-  int maps;                                // with a coverage
-  std::optional<double> mean;              // of the maps' means
-  std::optional<double> ratio_to_optimum;  // mean ÷ mean optimum, a fraction; empty unless every map has an optimum
+  int maps;                    // with a coverage
+  std::optional<double> mean;  // of the maps' means
+  // mean ÷ mean optimum, a fraction; 1 where no walk is worth anything. Empty unless every map has an optimum.
+  std::optional<double> ratio_to_optimum;
 };
 
 struct Comparison {
