@@ -212,6 +212,7 @@ TEST(Episode, MasksMovesAfterWhichTheEndIsOutOfReach) {
 TEST(Episode, AddsUpThePrizesOfFirstVisits) {
   const std::vector<Edge> edges = {{0, 1}, {1, 2}};
   const World world("prizes", Graph::from_edges(3, edges), std::vector<bool>(3), {}, {0.5, 2, 3});
+  EXPECT_EQ(world.percent_of_all(2.75), 50);
   Episode episode(world, {.budget = 9, .action_space = ActionSpace::kNeighbours});
   episode.reset(0);
   for (const int action : {0, 0, 0, 1}) episode.step(action);  // 1, 0, 1, 2

@@ -73,10 +73,6 @@ class PlanDisplay {
   ProgressDisplay display_;
 };
 
-double percent_of_all(const World& world, double prize) {
-  return world.total_prize() > 0 ? 100.0 * prize / world.total_prize() : 100.0;
-}
-
 int count_unreachable(const World& world, NodeId start) {
   int reached = 1;
   NearestFirst().run(world.open(), start, kNoLimit, [&](NodeId, double) {
@@ -133,7 +129,6 @@ std::string name_of(const World& world, NodeId node) {
 
 Json to_json(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
   const Plan& plan = answer.plan;
-  const auto percent = [&](double prize) { return percent_of_all(world, prize); };
   Json json;
   json["map"] = world.name();
   json["policy"] = policy_label(options.policy);
@@ -156,13 +151,13 @@ Json to_json(const World& world, const Task& task, const PlanOptions& options, c
   json["coverage"] = 100.0 * plan.visited / world.valid_count();
   if (world.has_prizes()) json["prize"] = plan.prize;
   json["cost"] = plan.cost;
-  json["upper_bound"] = percent(plan.bound);
+  json["upper_bound"] = world.percent_of_all(plan.bound);
   if (world.has_prizes()) {
     json["max_prize"] = plan.bound;
   } else {
     json["max_visited"] = answer.max_visited;
   }
-  json["gap"] = percent(plan.bound - plan.prize);
+  json["gap"] = world.percent_of_all(plan.bound - plan.prize);
   json["optimal"] = plan.optimal;
   json["unreachable"] = answer.unreachable;
   json["elapsed_s"] = answer.elapsed_s;
@@ -171,13 +166,12 @@ Json to_json(const World& world, const Task& task, const PlanOptions& options, c
 
 std::string format_bound(const World& world, const Answer& answer) {
   const Plan& plan = answer.plan;
-  const auto percent = [&](double prize) { return percent_of_all(world, prize); };
   const char* const what = world.has_prizes() ? "is worth more" : "visits more";
   if (plan.optimal) return fmt::format("optimal  no walk {}\n", what);
   const std::string most =
       world.has_prizes() ? fmt::format("{:g}", plan.bound) : fmt::format("{} nodes", answer.max_visited);
   return fmt::format("bound    no walk {} than {}, {:.1f} %: the gap is {:.1f} points\n", what, most,
-                     percent(plan.bound), percent(plan.bound - plan.prize));
+                     world.percent_of_all(plan.bound), world.percent_of_all(plan.bound - plan.prize));
 }
 
 std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
@@ -190,7 +184,7 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
                       100.0 * plan.visited / world.valid_count(), plan.cost);
   if (world.has_prizes()) {
     text += fmt::format("prize    {:g} of {:g}, {:.1f} %\n", plan.prize, world.total_prize(),
-                        percent_of_all(world, plan.prize));
+                        world.percent_of_all(plan.prize));
   }
   text += format_bound(world, answer);
   if (answer.unreachable > 0) {

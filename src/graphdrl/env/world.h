@@ -43,6 +43,7 @@ class World {
   double prize(NodeId node) const { return data_->prizes.empty() ? 1.0 : data_->prizes[node]; }
   const std::vector<double>& prizes() const { return data_->prizes; }
   double total_prize() const { return data_->total_prize; }  // of the valid nodes
+  double percent_of_all(double prize) const { return total_prize() > 0 ? 100.0 * prize / total_prize() : 100.0; }
 
   // What the file says of the walk asked for.
   const GivenTask& given() const { return data_->given; }

@@ -41,10 +41,6 @@ struct Arena {
   std::optional<double> optimum;  // percent
 };
 
-double percent_of_all(const World& world, double prize) {
-  return world.total_prize() > 0 ? 100.0 * prize / world.total_prize() : 100.0;
-}
-
 std::optional<double> mean_optimum(const Arena& arena) {
   const int nodes = arena.world.valid_count();
   if (nodes > kOptimumMaxNodes) return std::nullopt;
@@ -56,7 +52,7 @@ std::optional<double> mean_optimum(const Arena& arena) {
       const Task task{.view = arena.world, .start = start, .budget = arena.budget, .end = arena.end.of(start)};
       const auto prize = exact_prize(task);
       if (!prize) return std::nullopt;
-      known->second = percent_of_all(arena.world, *prize);
+      known->second = arena.world.percent_of_all(*prize);
     }
     sum += known->second;
   }
@@ -152,7 +148,7 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
     try {
       const auto results = roll_out(arena.world, starts, episode_options, *policy);
       for (std::size_t i = 0; i < results.size(); ++i) {
-        coverages[block.policy][block.map][block.episodes[i]] = percent_of_all(arena.world, results[i].prize);
+        coverages[block.policy][block.map][block.episodes[i]] = arena.world.percent_of_all(results[i].prize);
       }
     } catch (const SearchOutOfReach&) {
       out_of_reach[b] = 1;
