@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/graph/given_task.h"
 #include "graphdrl/graph/graph.h"
 #include "graphdrl/graph/grid_map.h"
-#include "graphdrl/io/node_link.h"
 
 namespace graphdrl {
 

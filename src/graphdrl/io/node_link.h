@@ -1,22 +1,15 @@
 // Any graph as JSON in node-link form, as networkx's node_link_data and D3 write it.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "graphdrl/graph/given_task.h"
 #include "graphdrl/graph/graph.h"
 
 namespace graphdrl {
-
-// What a file says of the walk asked for, where it does.
-struct GivenTask {
-  std::optional<double> budget;
-  NodeId start = kNoNode;
-  NodeId end = kNoNode;
-};
 
 // A graph with its obstacles, as a file holds it.
 struct GraphMap {
