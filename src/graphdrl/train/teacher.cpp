@@ -1,0 +1,109 @@
+#include "graphdrl/train/teacher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "graphdrl/nn/explorer_network.h"
+#include "graphdrl/planners/annealing.h"
+#include "graphdrl/planners/baselines.h"
+
+namespace graphdrl {
+namespace {
+
+// Chosen by how often the best first visit, by long searches, is the one labelled best (docs/explorer.md, "Training").
+constexpr double kLookShare = 7.5;   // steps of a look, in those of a label
+constexpr double kBeginShare = 20;   // of the first one
+constexpr double kBeginFrom = 0.3;   // of the annealing's schedule: how hot a search begins
+constexpr double kLookFrom = 0.5;
+constexpr double kLabelFrom = 0.9;  // cold: so that labels differ by what first visits do, and not by chance
+constexpr int kFewSteps = 60;
+constexpr int kManySteps = 1500;
+
+}  // namespace
+
+// From an order of targets, of which what can be paid for is taken.
+Teacher::Found Teacher::improve(const Targets& targets, double limit, std::vector<int> order, std::int64_t steps,
+                                double from) {
+  double cost = 0;
+  int last = 0;
+  std::erase_if(order, [&](int target) {
+    const double there = cost + targets.cost(last, target);
+    if (there + targets.cost(target, targets.end()) > limit) return true;
+    cost = there;
+    last = target;
+    return false;
+  });
+  Annealing annealing(targets, limit, rng_.next());
+  annealing.start(order, std::vector<double>(order.size() + 1, kNoLimit));
+  for (std::int64_t step = 0; step < steps; ++step) {
+    annealing.step(from + (1 - from) * static_cast<double>(step) / static_cast<double>(steps));
+  }
+  order = annealing.best();
+  return {.order = std::move(order), .visits = annealing.best_prize(), .cost = annealing.best_cost()};
+}
+
+void Teacher::search(const Task& task, double steps, double from) {
+  targets_.clear();
+  const Targets& targets = targets_.emplace_back(task, std::nullopt);
+  std::vector<int> order;
+  for (const NodeId node : best_) {
+    if (const int target = targets.target_of(node); target > 0) order.push_back(target);
+  }
+  const double each = std::clamp(steps_ * targets.end(), kFewSteps, kManySteps);
+  const Found found =
+      improve(targets, task.limit(), std::move(order), static_cast<std::int64_t>(steps * each), from);
+  best_.clear();
+  for (const int target : found.order) best_.push_back(targets.node(target));
+}
+
+void Teacher::begin(const Task& task) {
+  NearestPlanner nearest;
+  const std::vector<NodeId> walk = nearest.plan(task).walk;
+  NodeSet visited = task.visited_before();
+  best_.clear();
+  for (const NodeId node : walk) {
+    if (visited.contains(node)) continue;
+    visited.insert(node);
+    best_.push_back(node);
+  }
+  search(task, kBeginShare, kBeginFrom);
+}
+
+void Teacher::look(const Task& task) {
+  search(task, kLookShare, kLookFrom);
+}
+
+NodeId Teacher::next_visit(const Task& task) {
+  while (!best_.empty()) {
+    const NodeId goal = best_.front();
+    bool found = false;
+    search_.run(task.view.open(), task.start, kNoLimit, [&](NodeId node, double /*cost*/) {
+      found = node == goal;
+      return found ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+    });
+    if (found) {
+      std::vector<NodeId> way;
+      search_.append_path_to(goal, way);
+      return *std::find_if(way.begin(), way.end(), [&](NodeId node) { return !task.visited.contains(node); });
+    }
+    best_.erase(best_.begin());  // one way edges left it behind
+  }
+  return kNoNode;
+}
+
+double Teacher::value(const Task& task, const FirstVisit& first) {
+  const Targets& before = targets_.front();
+  const int target = before.target_of(first.node);
+  const Targets targets = before.after(target);
+  std::vector<int> order;
+  for (const NodeId node : best_) {
+    if (const int next = targets.target_of(node); next > 0) order.push_back(next);
+  }
+  const auto steps = std::clamp(steps_ * targets.end(), kFewSteps, kManySteps);
+  const Found found = improve(targets, task.limit() - first.cost, std::move(order), steps, kLabelFrom);
+  const double visits = 1 + found.visits;
+  const double edges = (first.cost + found.cost) / task.view.open().mean_cost();
+  return visits - kWorthOfCost * (edges - visits);
+}
+
+}  // namespace graphdrl
