@@ -28,5 +28,11 @@ TEST(Budget, RefusesWhatIsNoNumberFromZeroUp) {
   EXPECT_THAT(error_of([] { Budget::parse("1e9x").cost_in(grid_world("..\n")); }), ::testing::HasSubstr("at most"));
 }
 
+TEST(Budget, IsCheckedWhereverItComesFrom) {
+  const World world = grid_world("..\n");
+  EXPECT_EQ(checked_budget(world, 1e8), 1e8);
+  EXPECT_THAT(error_of([&] { checked_budget(world, 1.1e8); }), ::testing::HasSubstr("at most 1e+08"));
+}
+
 }  // namespace
 }  // namespace graphdrl

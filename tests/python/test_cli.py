@@ -162,6 +162,10 @@ def bad_inputs(tmp_path, policy):
     (tmp_path / "prize.json").write_text(json.dumps(graph))
     (tmp_path / "labels.json").write_text('{"nodes": [{"id": "dock"}, {"id": "shelf"}], "links": []}')
     (tmp_path / "deep.json").write_text('{"nodes":[' + "[" * 10**6 + "]" * 10**6 + '],"links":[]}')
+    (tmp_path / "rich.oplib").write_text(
+        "TYPE : OP\nDIMENSION : 2\nCOST_LIMIT : 1e12\nEDGE_WEIGHT_TYPE : EUC_2D\nNODE_COORD_SECTION\n1 0 0\n2 3 4\n"
+        "NODE_SCORE_SECTION\n1 0\n2 1\nDEPOT_SECTION\n1\n-1\nEOF\n"
+    )
     evaluate_nearest = ["evaluate", "--policy", "nearest"]
     return [
         ([*evaluate_nearest, "--maps", tmp_path / "strange.txt"], "strange.txt:1:3: strange character"),
@@ -193,6 +197,7 @@ def bad_inputs(tmp_path, policy):
         (["plan", "paper", "--budget", "9"], "expected one map, got 10"),
         (["plan", "paper:a", "--budget", "nan"], "bad budget"),
         (["plan", "paper:a", "--budget", "1e9"], "a walk has at most 100000000 steps"),
+        (["plan", tmp_path / "rich.oplib"], "a walk has at most 100000000 steps"),
         (["plan", "paper:a", "--budget", "9", "--start", "3"], "start on an obstacle"),
         (["plan", "paper:a", "--budget", "9", "--start", "99"], "start outside the map"),
         (["plan", "paper:a", "--budget", "9", "--policy", "beam:0"], "bad beam width"),

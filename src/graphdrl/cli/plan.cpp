@@ -233,7 +233,8 @@ Task task_of(const World& world, const PlanOptions& options) {
   }
   return {.view = world,
           .start = start,
-          .budget = options.budget.empty() ? *given.budget : Budget::parse(options.budget).cost_in(world),
+          .budget = options.budget.empty() ? checked_budget(world, *given.budget)
+                                           : Budget::parse(options.budget).cost_in(world),
           .end = options.end.empty() ? given.end : parse_end(world, options.end).of(start)};
 }
 

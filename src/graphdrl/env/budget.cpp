@@ -26,14 +26,17 @@ Budget Budget::parse(std::string_view text) {
 }
 
 double Budget::cost_in(const World& world) const {
-  const double mean_cost = world.open().mean_cost();
-  const double cost = relative_ ? std::floor(value_ * world.valid_count() + 1e-9) * mean_cost : value_;
-  const double most = static_cast<double>(kMaxSteps) * mean_cost;
+  if (!relative_) return checked_budget(world, value_, text_);
+  return checked_budget(world, std::floor(value_ * world.valid_count() + 1e-9) * world.open().mean_cost(), text_);
+}
+
+double checked_budget(const World& world, double cost, std::string_view text) {
+  const double most = static_cast<double>(kMaxSteps) * world.open().mean_cost();
   if (cost <= most) return cost;
   throw Error(
       {.what = "bad budget",
        .expected = fmt::format("at most {:g}: a walk has at most {} steps, and stays in memory", most, kMaxSteps),
-       .got = fmt::format("{} = {:g}", text_, cost),
+       .got = text.empty() ? fmt::format("{:g}", cost) : fmt::format("{} = {:g}", text, cost),
        .where = world.name()});
 }
 

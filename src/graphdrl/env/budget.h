@@ -16,7 +16,7 @@ class Budget {
   // Throws Error on anything but a number from 0 up, with or without the x.
   static Budget parse(std::string_view text);
 
-  double cost_in(const World& world) const;  // throws Error where that is more than kMaxSteps mean edges
+  double cost_in(const World& world) const;  // throws Error as checked_budget() does
   const std::string& text() const { return text_; }
 
  private:
@@ -24,5 +24,9 @@ class Budget {
   double value_ = 0;
   bool relative_ = false;
 };
+
+// `cost` itself, as a budget in `world` that comes from anywhere. Throws Error where it is more than kMaxSteps mean
+// edges; `text` is what the user wrote, if anything.
+double checked_budget(const World& world, double cost, std::string_view text = {});
 
 }  // namespace graphdrl

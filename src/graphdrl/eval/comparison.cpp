@@ -79,7 +79,8 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
     const End own = given.end == kNoNode ? End::anywhere() : End::at(given.end);
     const End end = options.end.empty() ? own : parse_end(world, options.end);
     arenas.push_back({.world = world,
-                      .budget = options.budget ? options.budget->cost_in(world) : given.budget.value_or(kPaperBudget),
+                      .budget = options.budget ? options.budget->cost_in(world)
+                                               : checked_budget(world, given.budget.value_or(kPaperBudget)),
                       .end = end,
                       .starts = draw_starts(world, options, arenas.size()),
                       .optimum = {}});
