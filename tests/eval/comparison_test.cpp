@@ -110,6 +110,43 @@ TEST(Compare, ReachesTheOptimumWhereThatIsNothing) {
   EXPECT_EQ(result.overall[0].ratio_to_optimum, 1);
 }
 
+TEST(Compare, SaysWhatIsMeasuredUnderWhichConditions) {
+  const std::vector<Edge> edges = {{0, 1}};
+  const auto pair = [&](double budget) {
+    return World("pair", Graph::from_edges(2, edges), std::vector<bool>(2), {}, {1, 5},
+                 {.budget = budget, .start = 0, .end = 0});
+  };
+  const std::vector<std::string> nearest = {"nearest"};
+  const World grid = grid_world("...\n");
+  const auto first_line = [](const std::vector<World>& worlds, const ComparisonOptions& options) {
+    const std::string text = format_comparison(compare(worlds, options));
+    return text.substr(0, text.find('\n'));
+  };
+  EXPECT_EQ(first_line({grid}, {.policies = nearest}),
+            "Coverage of the valid nodes in %, budget 25, 30 episodes per map, random starts (seed 1)");
+  EXPECT_EQ(
+      first_line({pair(2), pair(3)}, {.policies = nearest, .episodes = 1}),
+      "Coverage of the sum of prizes in %, budget the maps' own, 1 episode per map, the maps' own starts, walks end "
+      "at the maps' own ends");
+  EXPECT_EQ(
+      first_line({pair(2), grid}, {.policies = nearest, .episodes = 2, .seed = 7}),
+      "Coverage of the valid nodes, or of the sum of prizes where a map has them, in %, budget the maps' own, else "
+      "25, 2 episodes per map, the maps' own starts, else random ones (seed 7), walks end at the maps' own ends, "
+      "else anywhere");
+  EXPECT_EQ(first_line({pair(2)},
+                       {.policies = nearest, .budget = Budget::parse("2x"), .end = "anywhere", .all_starts = true}),
+            "Coverage of the sum of prizes in %, budget 2x, every start once, walks end anywhere");
+  EXPECT_THAT(first_line({grid}, {.policies = nearest, .end = "start"}),
+              HasSubstr("(seed 1), walks end where they start"));
+  EXPECT_THAT(first_line({grid}, {.policies = nearest, .end = "0,1"}), HasSubstr("(seed 1), walks end at '0,1'"));
+}
+
+TEST(Compare, StandsBesideThePaperWhereWalksEndAnywhere) {
+  const std::vector<World> worlds = load_worlds({"paper:a"});
+  EXPECT_TRUE(compare(worlds, {.policies = {"nearest"}}).rows[0].paper);
+  EXPECT_FALSE(compare(worlds, {.policies = {"nearest"}, .end = "start"}).rows[0].paper);
+}
+
 TEST(Compare, RefusesBadOptions) {
   EXPECT_THAT(error_of([] { compare(paper_worlds(), {.policies = {"nearest"}, .episodes = 0}); }),
               HasSubstr("expected at least 1, got 0"));

@@ -210,15 +210,19 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
     const std::string label = unambiguous_label(options.policies[policy], options.policies);
     for (std::size_t map = 0; map < arenas.size(); ++map) {
       const Arena& arena = arenas[map];
+      const bool ends_anywhere = arena.end.of(arena.starts.front()) == kNoNode;
       const std::vector<double>& values = coverages[policy][map];
-      comparison.rows.push_back({.map = arena.world.name(),
-                                 .policy = label,
-                                 .valid_nodes = arena.world.valid_count(),
-                                 .budget = arena.budget,
-                                 .episodes = static_cast<int>(arena.starts.size()),
-                                 .coverage = values.empty() ? std::nullopt : std::optional(summarise(values)),
-                                 .optimum = arena.optimum,
-                                 .paper = paper_result(arena.world.name(), arena.budget)});
+      comparison.rows.push_back(
+          {.map = arena.world.name(),
+           .policy = label,
+           .valid_nodes = arena.world.valid_count(),
+           .has_prizes = arena.world.has_prizes(),
+           .given = arena.world.given(),
+           .budget = arena.budget,
+           .episodes = static_cast<int>(arena.starts.size()),
+           .coverage = values.empty() ? std::nullopt : std::optional(summarise(values)),
+           .optimum = arena.optimum,
+           .paper = ends_anywhere ? paper_result(arena.world.name(), arena.budget) : std::nullopt});
     }
     comparison.overall.push_back(summarise_rows(label, std::span(comparison.rows).last(arenas.size())));
   }

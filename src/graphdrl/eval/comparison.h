@@ -39,11 +39,13 @@ struct ComparisonRow {
   std::string map;
   std::string policy;
   int valid_nodes;
+  bool has_prizes;
+  GivenTask given;  // what the map itself says; options may say otherwise
   double budget;
   int episodes;
-  std::optional<Summary> coverage;  // empty where the policy's search is out of reach
-  std::optional<double> optimum;    // mean over the same starts; empty where out of reach
-  std::optional<PaperResult> paper;
+  std::optional<Summary> coverage;   // empty where the policy's search is out of reach
+  std::optional<double> optimum;     // mean over the same starts; empty where out of reach
+  std::optional<PaperResult> paper;  // of walks that may end anywhere, as the paper's do
 };
 
 struct ComparisonOverall {

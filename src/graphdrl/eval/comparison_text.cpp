@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "graphdrl/base/error.h"
 #include "graphdrl/eval/comparison.h"
 #include "graphdrl/planners/exact.h"
 
@@ -36,24 +37,74 @@ std::string format_rows(std::span<const ComparisonRow> rows, std::size_t name_wi
   return text + '\n';
 }
 
-// Of all rows; "the maps' own" where they differ.
+enum class Share { kNone, kSome, kAll };
+
+// Of the rows, how many are so.
+template <typename IsSo>
+Share share_of(const std::vector<ComparisonRow>& rows, const IsSo& is_so) {
+  const auto count = std::count_if(rows.begin(), rows.end(), is_so);
+  if (count == 0) return Share::kNone;
+  return count == std::ssize(rows) ? Share::kAll : Share::kSome;
+}
+
+std::string what_is_measured(const std::vector<ComparisonRow>& rows) {
+  switch (share_of(rows, [](const ComparisonRow& row) { return row.has_prizes; })) {
+    case Share::kNone:
+      return "Coverage of the valid nodes in %";
+    case Share::kSome:
+      return "Coverage of the valid nodes, or of the sum of prizes where a map has them, in %";
+    case Share::kAll:
+      break;
+  }
+  return "Coverage of the sum of prizes in %";
+}
+
 std::string budgets_of(const Comparison& comparison) {
   const auto& rows = comparison.rows;
-  const bool same = !rows.empty() && std::all_of(rows.begin(), rows.end(), [&](const ComparisonRow& row) {
-    return row.budget == rows.front().budget;
-  });
-  return same ? fmt::format("{:g}", rows.front().budget) : "the maps' own";
+  if (comparison.options.budget) return comparison.options.budget->text();
+  const Share same = share_of(rows, [&](const ComparisonRow& row) { return row.budget == rows.front().budget; });
+  if (same == Share::kAll) return fmt::format("{:g}", rows.front().budget);
+  const Share given = share_of(rows, [](const ComparisonRow& row) { return row.given.budget.has_value(); });
+  return given == Share::kAll ? "the maps' own" : fmt::format("the maps' own, else {:g}", kPaperBudget);
+}
+
+std::string starts_of(const Comparison& comparison) {
+  const ComparisonOptions& options = comparison.options;
+  if (options.all_starts) return "every start once";
+  const std::string episodes = fmt::format("{} episode{} per map", options.episodes, options.episodes == 1 ? "" : "s");
+  switch (share_of(comparison.rows, [](const ComparisonRow& row) { return row.given.start != kNoNode; })) {
+    case Share::kNone:
+      return fmt::format("{}, random starts (seed {})", episodes, options.seed);
+    case Share::kSome:
+      return fmt::format("{}, the maps' own starts, else random ones (seed {})", episodes, options.seed);
+    case Share::kAll:
+      break;
+  }
+  return episodes + ", the maps' own starts";
+}
+
+// Begins with a comma; empty where nothing is said of ends.
+std::string ends_of(const Comparison& comparison) {
+  const std::string& end = comparison.options.end;
+  if (end == "anywhere") return ", walks end anywhere";
+  if (end == "start") return ", walks end where they start";
+  if (!end.empty()) return fmt::format(", walks end at {}", in_quotes(end));
+  switch (share_of(comparison.rows, [](const ComparisonRow& row) { return row.given.end != kNoNode; })) {
+    case Share::kNone:
+      return "";
+    case Share::kSome:
+      return ", walks end at the maps' own ends, else anywhere";
+    case Share::kAll:
+      break;
+  }
+  return ", walks end at the maps' own ends";
 }
 
 }  // namespace
 
 std::string format_comparison(const Comparison& comparison) {
-  const ComparisonOptions& options = comparison.options;
-  std::string text = fmt::format(
-      "Coverage of the valid nodes in %, budget {}, {}\n\n",
-      options.budget ? options.budget->text() : budgets_of(comparison),
-      options.all_starts ? "every start once"
-                         : fmt::format("{} episodes per map, random starts (seed {})", options.episodes, options.seed));
+  std::string text = fmt::format("{}, budget {}, {}{}\n\n", what_is_measured(comparison.rows), budgets_of(comparison),
+                                 starts_of(comparison), ends_of(comparison));
   std::size_t name_width = 11;
   for (const ComparisonRow& row : comparison.rows) {
     name_width = std::max({name_width, row.map.size(), row.policy.size()});
