@@ -21,7 +21,9 @@ void MaxFlow::set_capacity(int arc, double capacity, double back) {
 bool MaxFlow::find_path(int from, int to) {
   std::fill(came_by_.begin(), came_by_.end(), -1);
   queue_.assign(1, from);
+  scanned_ += std::ssize(came_by_) / 8;  // forgotten
   for (std::size_t head = 0; head < queue_.size(); ++head) {
+    scanned_ += std::ssize(arcs_at_[queue_[head]]);
     for (const int arc : arcs_at_[queue_[head]]) {
       const int next = arcs_[arc].to;
       if (next == from || came_by_[next] >= 0 || arcs_[arc].capacity <= kFlowRounding) continue;

@@ -1,6 +1,7 @@
 // Maximum flows and minimum cuts.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 namespace graphdrl {
@@ -19,6 +20,8 @@ class MaxFlow {
   bool reaches(int from, int to, double needed);
   // After a flow that does not reach: the nodes on the near side of a minimum cut, `from` among them.
   const std::vector<int>& near_side() const { return queue_; }
+  // Arcs looked at up to now.
+  std::int64_t scanned() const { return scanned_; }
 
   static constexpr double kFlowRounding = 1e-7;
 
@@ -40,6 +43,7 @@ class MaxFlow {
   std::vector<int> came_by_;  // arcs; -1 for nodes not reached
   std::vector<int> queue_;
   std::vector<Pushed> pushed_;
+  std::int64_t scanned_ = 0;
 };
 
 }  // namespace graphdrl

@@ -49,6 +49,8 @@ bool is_plain(const Task& task) {
   return task.ends_anywhere() && !task.view.has_prizes() && !task.view.open().weighted();
 }
 
+constexpr int kIncumbentShare = 10;  // of the time, one part for a walk to begin branch and cut with
+
 // The walk that goes straight to where it must end.
 std::vector<NodeId> straight_walk(const Task& task) {
   std::vector<NodeId> walk = {task.start};
@@ -80,16 +82,16 @@ std::optional<std::vector<NodeId>> exact_walk(const Task& task, Deadline deadlin
 
 Plan ExactPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
   check(task);
-  const auto half = [&]() -> Deadline {
+  const auto part = [&](int parts) -> Deadline {  // of the time left
     if (!deadline) return std::nullopt;
     const auto now = std::chrono::steady_clock::now();
-    return now + (*deadline - now) / 2;
+    return now + (*deadline - now) / parts;
   };
-  if (auto walk = exact_walk(task, half())) return plan_of_walk(task, *std::move(walk), /*optimal=*/true);
+  if (auto walk = exact_walk(task, part(2))) return plan_of_walk(task, *std::move(walk), /*optimal=*/true);
   const auto lp = make_lp_bound(task, kNoLimit);
   if (lp != nullptr || deadline) {
-    Plan best =
-        incumbent_ == nullptr ? plan_of_walk(task, straight_walk(task)) : incumbent_->plan(task, half(), report);
+    Plan best = incumbent_ == nullptr ? plan_of_walk(task, straight_walk(task))
+                                      : incumbent_->plan(task, part(lp == nullptr ? 1 : kIncumbentShare), report);
     if (best.optimal) return best;
     if (lp != nullptr) {
       const LpBound::Effort effort{.deadline = deadline, .work = deadline ? kNoLimit : kExactMaxWork};

@@ -80,10 +80,12 @@ void LinearProgram::set_bounds(int column, double lower, double upper) {
   solver_->model.setColumnBounds(column, lower, upper);
 }
 
-LinearProgram::Outcome LinearProgram::solve(Deadline deadline) {
+LinearProgram::Outcome LinearProgram::solve(Deadline deadline, double work) {
   ClpSimplex& model = solver_->model;
   static_cast<DeadlineHandler*>(model.eventHandler())->deadline = deadline;
-  const int most_iterations = std::max(kFewestIterations, kIterationsPerRow * model.numberRows());
+  const int size = model.numberRows() + model.numberColumns();
+  const int most_iterations = static_cast<int>(
+      std::min<double>(std::max(kFewestIterations, kIterationsPerRow * model.numberRows()), 1 + work / size));
   run_dual(most_iterations);
   if (model.status() == kPrimalInfeasible) {
     if (proves_infeasible()) return Outcome::kInfeasible;

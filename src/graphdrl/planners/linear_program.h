@@ -48,8 +48,8 @@ class LinearProgram {
   void remove_slack_rows(int first);
   void set_bounds(int column, double lower, double upper);
 
-  // Dual simplex. Cost: what the iterations cost, each about linear in rows and columns.
-  Outcome solve(Deadline deadline);
+  // Dual simplex, until a deadline or so much work more [work()], about.
+  Outcome solve(Deadline deadline, double work = kUnbounded);
 
   // The bound after so many iterations with other bounds of a column; kUnbounded below zero where there is no solution.
   // Leaves everything as the last solve did. REQUIRES: that solve was optimal.
@@ -59,7 +59,8 @@ class LinearProgram {
   int rows() const;
   double lower(int column) const;
   double upper(int column) const;
-  std::int64_t work() const { return work_; }  // of all iterations up to now, in rows and columns
+  // Up to now: iterations, each times the rows and columns there were. A million takes about 30 ms.
+  std::int64_t work() const { return work_; }
 
   // Of the last solve.
   std::span<const double> values() const { return values_; }

@@ -51,8 +51,12 @@ class BranchAndCut final : public LpBound {
   LinearProgram& program() { return relaxation_.program(); }
   double rounded(double bound) const;
   bool beaten(double bound) const { return bound <= prize_ * (1 + kPrizeMargin) + 1e-12; }
-  bool spent(const Effort& effort, std::int64_t before) {
-    return passed(effort.deadline) || static_cast<double>(program().work() - before) >= effort.work;
+  // What is left of the work, where `before` had been done.
+  double work_left(const Effort& effort, std::int64_t before) const {
+    return effort.work - static_cast<double>(relaxation_.work() - before);
+  }
+  bool spent(const Effort& effort, std::int64_t before) const {
+    return passed(effort.deadline) || work_left(effort, before) <= 0;
   }
   void apply(const std::vector<Change>& changes);
   void fix_by_reduced_costs(std::vector<Change>& changes);
@@ -79,16 +83,16 @@ double BranchAndCut::rounded(double bound) const {
 
 void BranchAndCut::cut(double prize, Effort effort) {
   prize_ = std::max(prize_, prize);
-  const std::int64_t before = program().work();
+  const std::int64_t before = relaxation_.work();
   const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
   double last = kNoLimit;
   for (int tired = 0; tired < kPatience && !beaten(bound_) && !spent(effort, before);) {
-    const Outcome outcome = program().solve(effort.deadline);
+    const Outcome outcome = program().solve(effort.deadline, work_left(effort, before));
     bound_ = std::min(bound_, rounded(program().bound()));
     if (outcome != Outcome::kOptimal) break;
     const bool falls = last - program().bound() >= kLeastFall * scale;
     if (falls) relaxation_.remove_slack_rows();
-    if (relaxation_.separate() == 0) break;
+    if (relaxation_.separate(effort.deadline) == 0) break;
     tired = falls ? 0 : tired + 1;
     last = std::min(last, program().bound());
   }
@@ -144,13 +148,13 @@ Outcome BranchAndCut::solve_part(Part& part, const Effort& effort) {
       if (!relaxation_.integral()) return outcome;
     }
     last = part.estimate;
-    if (relaxation_.separate() == 0) return outcome;
+    if (relaxation_.separate(effort.deadline) == 0) return outcome;
   }
 }
 
 void BranchAndCut::branch(double prize, Effort effort) {
   prize_ = std::max(prize_, prize);
-  const std::int64_t before = program().work();
+  const std::int64_t before = relaxation_.work();
   if (!begun_) parts_.push({bound_, kNoLimit, 0, {}});
   begun_ = true;
   while (!beaten(bound_) && !spent(effort, before)) {
@@ -170,8 +174,9 @@ void BranchAndCut::branch(double prize, Effort effort) {
     }
     if (relaxation_.integral()) {
       take_walk();
-      if (!beaten(part.bound)) break;
-      continue;
+      if (beaten(part.bound)) continue;
+      parts_.push(std::move(part));  // late, or by rounding
+      break;
     }
     fix_by_reduced_costs(part.changes);
     const WalkRelaxation::Branches branches = relaxation_.branches();

@@ -174,12 +174,12 @@ void WalkRelaxation::add_ends(LinearProgram::Row& row, double factor, const std:
   row.upper -= factor;
 }
 
-int WalkRelaxation::separate() {
+int WalkRelaxation::separate(Deadline deadline) {
   found_.clear();
   separate_simple();
-  if (!directed_) separate_parity();
+  if (!directed_) separate_parity(deadline);
   if (!directed_) separate_partitions();
-  separate_connection();
+  separate_connection(deadline);
   program_.add_rows(found_);
   return static_cast<int>(found_.size());
 }
@@ -264,7 +264,9 @@ void WalkRelaxation::separate_partition(const std::vector<int>& component) {
       if (component[node] != component[0]) choice.add_arc(component[node], parts + i, kNoLimit);
     }
   }
-  if (choice.reaches(source, source + 1, worth - kViolation)) return;
+  const bool holds = choice.reaches(source, source + 1, worth - kViolation);
+  scanned_ += choice.scanned();
+  if (holds) return;
   std::vector<char> chosen(source + 2);
   for (const int node : choice.near_side()) chosen[node] = 1;
   LinearProgram::Row& row = found_.emplace_back();
@@ -280,7 +282,7 @@ void WalkRelaxation::separate_partition(const std::vector<int>& component) {
 }
 
 // Each node alone, and what hangs together by edges that are not integral, by more and more of a fraction.
-void WalkRelaxation::separate_parity() {
+void WalkRelaxation::separate_parity(Deadline deadline) {
   std::set<std::vector<int>> tried;
   for (const double fraction : {1.0, 0.01, 0.1, 0.2, 0.3, 0.4}) {
     std::vector<int> component = components([&](const Arc& arc) {
@@ -289,13 +291,13 @@ void WalkRelaxation::separate_parity() {
     });
     if (tried.insert(component).second) separate_parity_of(component);
   }
-  if (found_.empty()) separate_parity_cuts();
+  if (found_.empty()) separate_parity_cuts(deadline);
 }
 
 // S from the minimum cuts between nodes, by how far values are from whole numbers: if any row is violated, then one of
 // a cut tree [Padberg and Rao 1982; Letchford, Reinelt and Theis 2008]. The cuts are those of an equivalent flow tree
 // [Gusfield 1990].
-void WalkRelaxation::separate_parity_cuts() {
+void WalkRelaxation::separate_parity_cuts(Deadline deadline) {
   const int count = static_cast<int>(nodes_.size());
   MaxFlow distances(count);
   const auto add = [&](int one, int other, double part) {
@@ -319,6 +321,7 @@ void WalkRelaxation::separate_parity_cuts() {
   }
   for (int i = 0; i < count; ++i) {
     if (toward[i] < 0) continue;
+    if (passed(deadline)) break;
     distances.reaches(i, toward[i], kNoLimit);
     std::vector<int> side(count);
     for (const int node : distances.near_side()) side[node] = 1;
@@ -327,6 +330,7 @@ void WalkRelaxation::separate_parity_cuts() {
     }
     separate_parity_of(side);
   }
+  scanned_ += distances.scanned();
 }
 
 // For each component the violation is least where F is what is nearer to 1 than to 0, but for one where that is an even
@@ -410,7 +414,8 @@ void WalkRelaxation::add_links() {
 
 // In order of y, so that a node once found connected well enough is in no violated S of those to come: it counts as the
 // start for them, and flows end soon.
-void WalkRelaxation::separate_connection() {
+void WalkRelaxation::separate_connection(Deadline deadline) {
+  const std::int64_t before = network_.scanned();
   for (std::size_t arc = 0; arc < arcs_.size(); ++arc) {
     const double capacity = uses(arcs_[arc]);
     network_.set_capacity(static_cast<int>(2 * arc), capacity, directed_ ? 0 : capacity);
@@ -426,6 +431,7 @@ void WalkRelaxation::separate_connection() {
     const double needed = (directed_ ? 1 : 2) * value(visit_[node]) - kViolation;
     if (needed <= 0) break;
     if (cut_off[node] != 0) continue;
+    if (passed(deadline)) break;
     if (network_.reaches(node, static_cast<int>(nodes_.size()), needed)) {
       network_.set_capacity(to_start_[node], kNoLimit);
       continue;
@@ -433,6 +439,7 @@ void WalkRelaxation::separate_connection() {
     add_connection_row(node);
     for (const int other : network_.near_side()) cut_off[other] = 1;
   }
+  scanned_ += network_.scanned() - before;
 }
 
 void WalkRelaxation::add_connection_row(int node) {

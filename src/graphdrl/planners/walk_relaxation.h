@@ -45,13 +45,15 @@ class WalkRelaxation {
   explicit WalkRelaxation(const Task& task);
 
   LinearProgram& program() { return program_; }
+  // Up to now: LinearProgram::work(), and as much for maximum flows as takes as long.
+  std::int64_t work() const { return program_.work() + scanned_ / kArcsPerWork; }
   // Prizes add up to multiples of it; 0 where nothing is known.
   double prize_step() const { return prize_step_; }
 
   // Takes out the rows added by separate() that do not bind.
   void remove_slack_rows() { program_.remove_slack_rows(fixed_rows_); }
-  // Adds rows that the last solution violates. Their number.
-  int separate();
+  // Adds rows that the last solution violates, as many as it finds until the deadline. Their number.
+  int separate(Deadline deadline);
   // Of the last solution.
   bool integral() const;
   // Two parts without the last solution, which together hold every walk. REQUIRES: it is optimal and not integral.
@@ -80,14 +82,16 @@ class WalkRelaxation {
 
   void separate_simple();
   std::vector<int> components(const std::function<bool(const Arc&)>& joins) const;
-  void separate_parity();
-  void separate_parity_cuts();
+  void separate_parity(Deadline deadline);
+  void separate_parity_cuts(Deadline deadline);
   void separate_parity_of(const std::vector<int>& component);
   void add_parity_row(const std::vector<int>& component, int which);
   void separate_partitions();
   void separate_partition(const std::vector<int>& component);
-  void separate_connection();
+  void separate_connection(Deadline deadline);
   void add_connection_row(int node);
+
+  static constexpr std::int64_t kArcsPerWork = 10;
 
   LinearProgram program_;
   bool directed_;
@@ -102,6 +106,7 @@ class WalkRelaxation {
   std::vector<std::vector<int>> at_;  // [n], arcs
   std::vector<LinearProgram::Row> found_;
   MaxFlow network_;
+  std::int64_t scanned_ = 0;   // arcs of all flows
   std::vector<int> to_start_;  // [n], its arcs
 };
 
