@@ -1,8 +1,9 @@
 // Upper bounds by linear programming over the edges of a graph, and proofs of optimality by branch and cut.
 //
 // The relaxation is WalkRelaxation's [after Fischetti, Salazar González and Toth 1998]. Branching halves the nodes
-// where the walk may end, then decides about visits, then about edges; the part with the highest bound comes next, so
-// that the bound falls as parts are done, and columns that could not matter any more are fixed by their reduced costs.
+// where the walk may end, then decides about visits and edges after short trials both ways; the part with the highest
+// bound comes next, so that the bound falls as parts are done, and columns that could not matter any more are fixed by
+// their reduced costs.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +19,8 @@ class LpBound {
  public:
   virtual ~LpBound() = default;
 
-  // Until when to work: a deadline, and so many rows and columns of simplex iterations. The result depends on the work
-  // alone where there is no deadline.
+  // Until when to work: a deadline, and so much work [LinearProgram::work(), and flows likewise]. The result depends on
+  // the work alone where there is no deadline.
   struct Effort {
     Deadline deadline = {};
     double work = kNoLimit;
