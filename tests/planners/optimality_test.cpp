@@ -156,6 +156,21 @@ std::optional<PrizeOptimum> brute_force_prize(const Case& c, NodeId end) {
   return best;
 }
 
+// A way through other places may cost less than the straight one.
+class RandomCosts final : public PairCosts {
+ public:
+  RandomCosts(NodeId nodes, Rng& rng) : nodes_(nodes) {
+    for (int i = 0; i < nodes * nodes; ++i) costs_.push_back(rng.below(6));
+  }
+  double cost(NodeId from, NodeId to) const override {
+    return costs_[std::min(from, to) * nodes_ + std::max(from, to)];
+  }
+
+ private:
+  NodeId nodes_;
+  std::vector<double> costs_;
+};
+
 TEST(Optimality, HoldsForEndsAndPrizes) {
   Rng rng(13);
   int compared = 0;
@@ -170,7 +185,11 @@ TEST(Optimality, HoldsForEndsAndPrizes) {
     std::vector<double> prizes;
     for (NodeId node = 0; node < c.world.node_count(); ++node) prizes.push_back(0.5 * rng.below(7));
     if (rng.below(2) == 0) prizes.clear();
-    c.world = World("prizes", c.world.graph(), c.world.blocked(), {}, prizes);
+    const NodeId count = c.world.node_count();
+    const bool complete = rng.below(4) == 0;
+    c.world =
+        World("prizes", complete ? Graph::complete(count, std::make_shared<RandomCosts>(count, rng)) : c.world.graph(),
+              complete ? std::vector<bool>(count) : c.world.blocked(), {}, prizes);
     const auto nodes = c.world.valid_nodes();
     const NodeId node = nodes[rng.below(static_cast<std::uint32_t>(nodes.size()))];
     const std::uint32_t kind = rng.below(3);
@@ -204,11 +223,12 @@ TEST(Optimality, HoldsForEndsAndPrizes) {
       ASSERT_LE(found.prize, optimum->prize + 1e-9);
       ASSERT_GE(found.bound, optimum->prize - 1e-9);
       ASSERT_TRUE(!found.optimal || found.prize >= optimum->prize - 1e-9);
-      if (name == "beam:1000") {
+      if (name == "beam:1000" && !complete) {
         ASSERT_TRUE(found.optimal);
         ASSERT_NEAR(found.cost, optimum->cost, 1e-9);
       }
-      missed[name] += found.prize < optimum->prize - 1e-9;
+      // Beams go straight to where a way round may cost less.
+      if (name != "beam:8" || !complete) missed[name] += found.prize < optimum->prize - 1e-9;
     }
   }
   EXPECT_GT(compared, 3'000);

@@ -33,7 +33,7 @@ void check(const Task& task) {
   if (task.ends_anywhere()) return;
   check_node(task.view, task.end, "end");
   bool reached = task.end == task.start;
-  NearestFirst().run(task.view.open(), task.start, task.limit(), [&](NodeId node, double) {
+  NearestFirst().run_cheapest(task.view.open(), task.start, task.limit(), [&](NodeId node, double) {
     reached = reached || node == task.end;
     return reached ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
   });

@@ -40,10 +40,12 @@ class Graph {
   static Graph grid(int rows, int cols, const std::vector<bool>& blocked);
 
   // An edge between any two nodes, undirected. Lists of neighbours are in ascending order from the node on, and begin
-  // again after the last one. Memory: O(nodes), and what the costs need. Cost: a look at every pair.
+  // again after the last one. Memory: O(nodes), and what the costs need. Cost: a look at every pair. Where costs are
+  // not metric, a way through other nodes may be cheaper than the straight one [NearestFirst::run_cheapest()].
   static Graph complete(NodeId node_count, std::shared_ptr<const PairCosts> costs);
-  // Searches take its edges straight: no way round costs less, but for rounding.
   bool is_complete() const { return pair_costs_ != nullptr; }
+  // Whether no cheaper way is missed where a complete graph's edges are only taken straight; true of other graphs.
+  bool straight_ways_suffice() const { return !is_complete() || pair_costs_->metric(); }
 
   // The same nodes, without the edges that touch a dropped one. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;

@@ -98,8 +98,8 @@ struct Rectangle {
   int width;
 };
 
-// Splits a rectangle in two along its longer side, and leaves a strip of some cells between them. The strip, and what is
-// on either side of it. REQUIRES: the longer side has at least thickness + 2 cells.
+// Splits a rectangle in two along its longer side, and leaves a strip of some cells between them: gives the strip, and
+// what is on either side of it. REQUIRES: the longer side has at least thickness + 2 cells.
 std::array<Rectangle, 3> split(const Rectangle& whole, int thickness, Rng& rng) {
   const bool across = whole.height > whole.width || (whole.height == whole.width && rng.below(2) == 0);
   const int length = across ? whole.height : whole.width;

@@ -12,6 +12,9 @@ class PairCosts {
  public:
   virtual ~PairCosts() = default;
   virtual double cost(NodeId from, NodeId to) const = 0;
+  // Whether no way through other places is cheaper than the straight one. Distances that are rounded to the nearest
+  // number are not metric.
+  virtual bool metric() const { return false; }
 };
 
 }  // namespace graphdrl

@@ -34,6 +34,15 @@ class NearestFirst {
     }
   }
 
+  // The same, but of a complete graph run() takes the straight ways alone, and this the cheapest ones.
+  // Cost: O(N^2) there, unless costs are metric.
+  template <typename Visit>
+  void run_cheapest(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
+    if (graph.straight_ways_suffice()) return run(graph, from, max_cost, visit);
+    begin(graph.node_count());
+    run_dense(graph, from, max_cost, visit);
+  }
+
   // Appends the way to a node met in the last run: every node after its start, the node last.
   void append_path_to(NodeId node, std::vector<NodeId>& walk) const {
     const auto first = std::ssize(walk);
@@ -70,10 +79,13 @@ class NearestFirst {
   template <typename Visit>
   void run_straight(const Graph& graph, NodeId from, double max_cost, const Visit& visit);
 
+  template <typename Visit>
+  void run_dense(const Graph& graph, NodeId from, double max_cost, const Visit& visit);
+
   std::vector<Mark> marks_;  // [N]
   std::uint32_t run_ = 0;
   std::vector<NodeId> queue_;  // [N], breadth first: in order
-  std::vector<Reached> heap_;  // Dijkstra
+  std::vector<Reached> heap_;  // Dijkstra; without a heap: what is not met yet
 };
 
 template <typename Visit>
@@ -151,8 +163,45 @@ void NearestFirst::run_straight(const Graph& graph, NodeId from, double max_cost
   }
 }
 
+// Dijkstra without a heap [1959].
+template <typename Visit>
+void NearestFirst::run_dense(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
+  heap_.clear();
+  for (NodeId node = 0; node < graph.node_count(); ++node) {
+    if (node != from) heap_.push_back({kNoLimit, node, node, from});
+  }
+  marks_[from] = {run_, from};
+  NodeId here = from;
+  double cost = 0;
+  bool through = true;
+  while (!heap_.empty()) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < heap_.size(); ++i) {
+      Reached& left = heap_[i];
+      if (through) {
+        const double there = cost + graph.cost(here, graph.index_of(here, left.node));
+        if (there < left.cost) {
+          left.cost = there;
+          left.parent = here;
+        }
+      }
+      if (heap_[nearest] > left) nearest = i;
+    }
+    const Reached met = heap_[nearest];
+    if (met.cost > max_cost) return;
+    heap_[nearest] = heap_.back();
+    heap_.pop_back();
+    here = met.node;
+    cost = met.cost;
+    marks_[here] = {run_, met.parent};
+    const Next next = visit(here, cost);
+    if (next == Next::kEnd) return;
+    through = next == Next::kThrough;
+  }
+}
+
 // What it costs to get from each node to `goal`, by the cheapest way; kNoLimit where there is none. into: the graph
-// turned round. Cost: O(nodes + edges), times a logarithm where edges have costs.
+// turned round. Cost: as run_cheapest().
 std::vector<double> costs_to(const Graph& into, NodeId goal);
 
 }  // namespace graphdrl

@@ -78,6 +78,8 @@ class PlaneCosts final : public PairCosts {
     return std::floor(kRadius * std::acos(0.5 * ((1.0 + q1) * q2 - (1.0 - q1) * q3)) + 1.0);
   }
 
+  bool metric() const override { return distance_ != Distance::kEuclidean; }
+
  private:
   Distance distance_;
   std::vector<Point> points_;

@@ -167,7 +167,8 @@ Plan Beam::best_plan(bool complete) {
   std::vector<NodeId> order;
   for (std::int64_t trail = best_.trail; trail >= 0; trail = trail_[trail].before) order.push_back(trail_[trail].node);
   std::reverse(order.begin(), order.end());
-  return plan_of_walk(task_, walk_through(task_, order, nearest_), complete && !dropped_);
+  return plan_of_walk(task_, walk_through(task_, order, nearest_),
+                      complete && !dropped_ && view_.open().straight_ways_suffice());
 }
 
 bool Beam::expand_level(Ticker& ticker) {
@@ -346,6 +347,10 @@ double bytes_needed(const View& view, const BeamOptions& options, const FirstVis
 }
 
 }  // namespace
+
+bool beam_fits(const View& view, const BeamOptions& options) {
+  return bytes_needed(view, options, nullptr) <= kMaxBeamBytes;
+}
 
 Plan beam_plan(const Task& task, const BeamOptions& options, Deadline deadline, FirstVisitScorer* scorer,
                const Report& report) {

@@ -20,6 +20,9 @@ inline constexpr int kTiesPerBranch = 4;
 inline constexpr int kMaxBeamWidth = 1'000'000;
 inline constexpr double kMaxBeamBytes = 4e9;
 
+// Whether a beam without a scorer needs kMaxBeamBytes at most.
+bool beam_fits(const View& view, const BeamOptions& options);
+
 // The best walk found; it ends with its last first visit, or goes on to where it must end. Of walks that visit as many
 // nodes, the cheapest. Each level keeps a third by each of three rankings, since none works everywhere: what was spent
 // and all, a quarter or none of the penalties for what is left over. A scorer's word takes the place of the last one;

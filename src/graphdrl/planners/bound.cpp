@@ -23,7 +23,7 @@ Reachable::Reachable(const Task& task) : contains(task.view.node_count()), prize
     if (task.visited.empty() || !task.visited.contains(node)) prizes[node] = task.view.prize(node);
   };
   take(task.start, 0);
-  NearestFirst().run(task.view.open(), task.start, task.limit(), [&](NodeId node, double cost) {
+  NearestFirst().run_cheapest(task.view.open(), task.start, task.limit(), [&](NodeId node, double cost) {
     take(node, cost);
     return NearestFirst::Next::kThrough;
   });

@@ -13,7 +13,7 @@ namespace graphdrl {
 SmallWorld::SmallWorld(const Task& task) {
   const Graph& open = task.view.open();
   nodes = {task.start};
-  NearestFirst().run(open, task.start, task.limit(), [&](NodeId node, double) {
+  NearestFirst().run_cheapest(open, task.start, task.limit(), [&](NodeId node, double) {
     nodes.push_back(node);
     return nodes.size() > kExactMaxNodes ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
   });
@@ -52,15 +52,11 @@ bool is_plain(const Task& task) {
 constexpr int kIncumbentShare = 10;  // of the time, one part for a walk to begin branch and cut with
 
 // The walk that goes straight to where it must end.
-std::vector<NodeId> straight_walk(const Task& task) {
-  std::vector<NodeId> walk = {task.start};
-  if (task.ends_anywhere() || task.end == task.start) return walk;
+Plan straight_plan(const Task& task) {
   NearestFirst search;
-  search.run(task.view.open(), task.start, kNoLimit, [&](NodeId node, double) {
-    return node == task.end ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
-  });
-  search.append_path_to(task.end, walk);
-  return walk;
+  std::vector<NodeId> walk = {task.start};
+  append_way_to_end(task, walk, search);
+  return plan_of_walk(task, std::move(walk));
 }
 
 }  // namespace
@@ -89,8 +85,8 @@ Plan ExactPlanner::plan(const Task& task, Deadline deadline, const Report& repor
   };
   if (auto walk = exact_walk(task, part(2))) return plan_of_walk(task, *std::move(walk), /*optimal=*/true);
   const auto lp = make_lp_bound(task, kNoLimit);
-  if (lp != nullptr || deadline) {
-    Plan best = incumbent_ == nullptr ? plan_of_walk(task, straight_walk(task))
+  if (lp != nullptr || deadline || planning_stopped()) {
+    Plan best = incumbent_ == nullptr ? straight_plan(task)
                                       : incumbent_->plan(task, part(lp == nullptr ? 1 : kIncumbentShare), report);
     if (best.optimal) return best;
     if (lp != nullptr) {

@@ -74,7 +74,11 @@ void append_way_to(const View& view, NodeId node, std::vector<NodeId>& walk, Nea
 }
 
 void append_way_to_end(const Task& task, std::vector<NodeId>& walk, NearestFirst& search) {
-  if (!task.ends_anywhere()) append_way_to(task.view, task.end, walk, search);
+  if (task.ends_anywhere() || walk.back() == task.end) return;
+  search.run_cheapest(task.view.open(), walk.back(), kNoLimit, [&](NodeId met, double) {
+    return met == task.end ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+  });
+  search.append_path_to(task.end, walk);
 }
 
 }  // namespace graphdrl
