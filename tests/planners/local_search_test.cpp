@@ -69,6 +69,46 @@ TEST(Targets, AreWhatIsWorthSomethingAndCanBeHad) {
   EXPECT_EQ(to_four.prize(to_four.end()), 4);
 }
 
+// As if they had been looked for there.
+TEST(Targets, AreLeftOverAfterAFirstStep) {
+  for (const bool directed : {false, true}) {
+    const World world = family_world("erdos-renyi", 40, /*weighted=*/true, directed);
+    Task task = task_of(world);
+    task.end = world.valid_nodes().back();
+    task.budget = 1000;
+    const Targets all(task, {});
+    NodeSet visited(world.node_count());
+    visited.insert(task.start);
+    for (const int first : {1, all.end() / 2, all.end() - 1}) {
+      Task rest = task;
+      rest.start = all.node(first);
+      rest.visited = visited;
+      rest.visited.insert(rest.start);
+      // Without what edges of one way leave behind.
+      const Targets expected(rest, {});
+      const Targets targets = all.after(first);
+      EXPECT_EQ(targets.node(0), rest.start);
+      EXPECT_EQ(targets.target_of(task.start), -1);
+      EXPECT_EQ(targets.end(), all.end() - 1);
+      EXPECT_EQ(targets.prize(0), 0);
+      EXPECT_NEAR(targets.total_prize(), all.total_prize() - (task.visited.empty() ? 2 : 1), 1e-9);
+      const auto there = [&](int target) {
+        return target == expected.end() ? targets.end() : targets.target_of(expected.node(target));
+      };
+      for (int from = 0; from < expected.end(); ++from) {
+        EXPECT_EQ(targets.prize(there(from)), expected.prize(from));
+        for (int to = 0; to <= expected.end(); ++to) {
+          EXPECT_EQ(targets.cost(there(from), there(to)), expected.cost(from, to));
+        }
+        const auto near = targets.near(there(from));
+        for (const int target : expected.near(from).first(std::min<std::size_t>(3, expected.near(from).size()))) {
+          EXPECT_THAT(near, testing::Contains(there(target)));
+        }
+      }
+    }
+  }
+}
+
 // Beyond kTableTargets a target knows its nearest ones only.
 TEST(Targets, KnowTheNearestInLargeWorlds) {
   const World world = family_world("obstacles", 61);

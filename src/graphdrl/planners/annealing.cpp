@@ -49,6 +49,9 @@ Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed)
 
 void Annealing::start(const std::vector<int>& order, const std::vector<double>& links) {
   route_.assign(order, links);
+  // Straight ways may cost more than those that led here [Graph::complete()].
+  while (route_.cost() > limit_ && route_.next(0) != targets_->end()) route_.remove(route_.previous(targets_->end()));
+  route_.keep();
   style_ = is_selective(*targets_, route_.prize()) ? kSelective : kOrdering;
   remember();
 }
@@ -96,13 +99,14 @@ void Annealing::remember() {
 }
 
 bool Annealing::accept(double temperature) {
+  if (route_.cost() > limit_) return false;
   const double gain = route_.prize() - route_.kept_prize() - price_ * (route_.cost() - route_.kept_cost());
   return gain >= 0 || rng_.uniform() < std::exp(gain / temperature);
 }
 
 // Takes out strings of targets that stand together and contain one near the seed.
 void Annealing::ruin(int seed) {
-  out_.clear();
+  removed_.clear();
   if (targets_->symmetric() && rng_.uniform() < style_.no_string_share) return;
   int strings = 1 + static_cast<int>(rng_.below(kMostStrings));
   const std::uint32_t longest = rng_.uniform() < style_.long_share ? kLong : kShort;
@@ -126,7 +130,7 @@ void Annealing::take_string(int first, int length) {
   for (int target = first; length > 0 && target != targets_->end(); --length) {
     const int next = route_.next(target);
     route_.remove(target);
-    out_.push_back(target);
+    removed_.push_back(target);
     target = next;
   }
 }
@@ -134,7 +138,7 @@ void Annealing::take_string(int first, int length) {
 // Takes up to half of the route out, lets what is left of the budget grow a region around a target that is not in it,
 // and puts back what still fits.
 void Annealing::move_region(int seed) {
-  out_.clear();
+  removed_.clear();
   const auto targets = static_cast<std::uint32_t>(targets_->end());
   for (int i = 0; i < kSeedTries && route_.contains(seed); ++i) seed = static_cast<int>(rng_.below(targets));
   int first = 0;
@@ -161,7 +165,28 @@ void Annealing::move_region(int seed) {
     }
   }
   for (const int target : grown_) marked_[target] = 0;
-  put_back_out();
+  put_back_removed();
+}
+
+// The ways on from two targets, or the ways to them, change their ends.
+Annealing::Turn Annealing::turn_of(int target, int other, bool forward) const {
+  const bool in_order = route_.before(target, other);
+  const int early = in_order ? target : other;
+  const int late = in_order ? other : target;
+  const int first = forward ? route_.next(early) : early;
+  const int last = forward ? late : route_.previous(late);
+  const int before = route_.previous(first);
+  const double in = targets_->cost(before, last);
+  const double out = targets_->cost(first, route_.next(last));
+  return {
+      .first = first, .last = last, .in = in, .out = out, .added = in + out - route_.link(before) - route_.link(last)};
+}
+
+void Annealing::turn(const Turn& turn) {
+  const int before = route_.previous(turn.first);
+  const int after = route_.next(turn.last);
+  route_.reverse(turn.first, turn.last, turn.in, turn.out);
+  for (const int touched : {before, turn.first, turn.last, after}) enqueue(touched);
 }
 
 // A random 2-opt move near a target, if it can be paid for.
@@ -180,34 +205,24 @@ void Annealing::turn_near(int target) {
     const int other = near[rng_.below(static_cast<std::uint32_t>(near.size()))];
     const bool forward = (rng_.next() >> 63) != 0;
     if (!route_.contains(other)) continue;
-    // Of the two ways on, or back, the ends change places.
-    const int first = route_.before(target, other) ? target : other;
-    const int second = first == target ? other : target;
-    if (!forward && first == 0) continue;
-    const int one = forward ? route_.next(first) : first;
-    const int last = forward ? second : route_.previous(second);
-    if (one == last) continue;
-    const int before = route_.previous(one);
-    const int after = route_.next(last);
-    const double in = targets_->cost(before, last);
-    const double out = targets_->cost(one, after);
-    if (in + out - route_.link(before) - route_.link(last) > slack) continue;
-    route_.reverse(one, last, in, out);
-    for (const int touched : {before, one, last, after}) enqueue(touched);
+    if (!forward && (target == 0 || other == 0)) continue;
+    const Turn found = turn_of(target, other, forward);
+    if (found.first == found.last || found.added > slack) continue;
+    turn(found);
     return;
   }
 }
 
 // Puts back what was taken out, and what is near.
 void Annealing::recreate(int seed) {
-  const std::size_t taken = out_.size();
-  for (const int target : out_) marked_[target] = 1;
+  const std::size_t taken = removed_.size();
+  for (const int target : removed_) marked_[target] = 1;
   const auto add = [&](int target) {
-    if (!route_.contains(target) && marked_[target] == 0) out_.push_back(target);
+    if (!route_.contains(target) && marked_[target] == 0) removed_.push_back(target);
   };
   add(seed);
   for (const int target : targets_->near(seed)) add(target);
-  for (std::size_t i = 0; i < taken; ++i) marked_[out_[i]] = 0;
+  for (std::size_t i = 0; i < taken; ++i) marked_[removed_[i]] = 0;
   if (style_.elsewhere_share > 0 && rng_.uniform() < style_.elsewhere_share) {
     // What was given up here may pay elsewhere.
     const auto other = static_cast<int>(rng_.below(static_cast<std::uint32_t>(targets_->end())));
@@ -216,13 +231,15 @@ void Annealing::recreate(int seed) {
       if (!route_.contains(target)) put_back(target);
     }
   }
-  put_back_out();
+  put_back_removed();
 }
 
 // In random order.
-void Annealing::put_back_out() {
-  for (std::size_t i = out_.size(); i > 1; --i) std::swap(out_[i - 1], out_[rng_.below(static_cast<std::uint32_t>(i))]);
-  for (const int target : out_) {
+void Annealing::put_back_removed() {
+  for (std::size_t i = removed_.size(); i > 1; --i) {
+    std::swap(removed_[i - 1], removed_[rng_.below(static_cast<std::uint32_t>(i))]);
+  }
+  for (const int target : removed_) {
     if (!route_.contains(target)) put_back(target);
   }
 }
@@ -292,10 +309,12 @@ void Annealing::enqueue(int target) {
 // Without a table, what a way costs that a change left is known at most. Here it is searched for.
 void Annealing::settle_links() {
   loose_.clear();
-  route_.changed([&](int target) {
-    if (!route_.contains(target)) return;
-    loose_.push_back(target);
-    if (target != 0) loose_.push_back(route_.previous(target));
+  route_.changed([&](int target, int other) {
+    for (const int changed : {target, other}) {
+      if (changed == kNone || !route_.contains(changed)) continue;
+      loose_.push_back(changed);
+      if (changed != 0) loose_.push_back(route_.previous(changed));
+    }
   });
   for (const int target : loose_) {
     const int next = route_.next(target);
@@ -308,7 +327,7 @@ void Annealing::settle_links() {
 
 // 2-opt [Croes 1958] from what changed, until nothing is left to gain there.
 void Annealing::improve() {
-  route_.changed([&](int target) {
+  route_.changed([&](int target, int /*other*/) {
     if (!route_.contains(target)) return;
     enqueue(target);
     if (target != 0) enqueue(route_.previous(target));
@@ -333,20 +352,11 @@ bool Annealing::two_opt(int target) {
     for (const int other : near) {
       if (targets_->cost(target, other) >= link) break;
       if (!route_.contains(other) || (!forward && other == 0)) continue;
-      const bool in_order = route_.before(target, other);
-      const int first = in_order ? target : other;
-      const int second = in_order ? other : target;
-      const int one = forward ? route_.next(first) : first;
-      const int last = forward ? second : route_.previous(second);
-      if (one == last) continue;
-      const int before = route_.previous(one);
-      const int after = route_.next(last);
-      const double in = targets_->cost(before, last);
-      const double out = targets_->cost(one, after);
-      const double gain = route_.link(before) + route_.link(last) - in - out;
-      if (gain <= kRounding * link) continue;
-      route_.reverse(one, last, in, out);
-      for (const int touched : {before, one, last, after}) enqueue(touched);
+      const Turn found = turn_of(target, other, forward);
+      if (found.first == found.last) continue;
+      const double links = route_.link(route_.previous(found.first)) + route_.link(found.last);
+      if (found.added >= -kRounding * links) continue;
+      turn(found);
       return true;
     }
   }

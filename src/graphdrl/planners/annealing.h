@@ -24,13 +24,14 @@ class Annealing {
   // also move budget between regions, and begin hotter.
   static bool is_selective(const Targets& targets, double prize);
 
-  // One step at so far through the schedule, 0 to 1.
+  // One step at so far through the schedule, 0 to 1. REQUIRES: start() came before.
   void step(double progress);
 
-  // The best route up to now.
+  // The best route up to now: its targets in order. What follows is of it, once it was called.
   const std::vector<int>& best();
   const std::vector<double>& best_links() const { return best_links_; }  // the costs of the ways, as for start()
   double best_prize() const { return best_prize_; }
+  double best_cost() const { return best_cost_; }
   int best_visits() const { return static_cast<int>(best_.size()); }
 
  private:
@@ -40,6 +41,14 @@ class Annealing {
     double added;  // to the cost of the route
     double in = 0;
     double out = 0;
+  };
+
+  struct Turn {  // a part of the route, to be turned round
+    int first;
+    int last;
+    double in;     // the cost of the way to `last` then
+    double out;    // and on from `first`
+    double added;  // to the cost of the route
   };
 
   struct Style {
@@ -55,7 +64,9 @@ class Annealing {
   void ruin(int seed);
   void take_string(int first, int length);
   void move_region(int seed);
-  void put_back_out();
+  void put_back_removed();
+  Turn turn_of(int target, int other, bool forward) const;
+  void turn(const Turn& turn);
   void turn_near(int target);
   void recreate(int seed);
   Place cheapest_place(int target);
@@ -72,14 +83,14 @@ class Annealing {
   Rng rng_;
   Style style_;
   Route route_;
-  double unit_;             // the mean prize: temperatures are in it
-  double price_;            // of a unit of cost
-  std::vector<int> out_;    // taken out, or near what was
-  std::vector<int> grown_;  // a region, from its seed on
+  double unit_;               // the mean prize: temperatures are in it
+  double price_;              // of a unit of cost
+  std::vector<int> removed_;  // taken out, or near what was
+  std::vector<int> grown_;    // a region, from its seed on
   std::vector<int> queue_;
   std::vector<int> loose_;  // targets whose way on may cost less than is known
   NearestFirst search_;
-  std::vector<char> marked_;  // [T + 1], in queue_ or out_
+  std::vector<char> marked_;  // [T + 1], in queue_ or removed_
   std::int64_t steps_ = 0;
   std::int64_t steps_per_look_;  // at whether the route is the best
   std::vector<int> best_;

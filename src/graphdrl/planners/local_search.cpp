@@ -19,6 +19,7 @@ using std::chrono::steady_clock;
 constexpr int kChains = 2;                  // without a deadline, whatever the number of threads
 constexpr double kStartShare = 0.05;        // of the time left, for each walk to start with but the first two
 constexpr double kExplorerVisitS = 0.4e-3;  // a first visit of the explorer: it is not begun where it would not end
+constexpr double kTargetsShare = 0.5;       // at most; what is left of it goes to the search
 constexpr double kBoundShare = 0.05;        // of the time left, for the knapsack bound, and again for the root's
 constexpr double kRootWork = 2e7;           // without a deadline, of the linear program: at most about 0.5 s
 constexpr double kBranchWork = 2e6;         // likewise, of branching once the search is over
@@ -155,7 +156,7 @@ std::int64_t default_iterations(int targets) {
 Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
   NearestPlanner nearest;
   Plan best = nearest.plan(task, deadline, report);
-  const Targets targets(task, deadline);
+  const Targets targets(task, share_of(deadline, kTargetsShare));
   best.bound = std::min(max_prize(task, share_of(deadline, kBoundShare)), targets.total_prize());
   std::unique_ptr<LpBound> lp;
   if (!is_met(best.bound, best.prize) && !passed(deadline)) lp = make_lp_bound(task, best.bound);
@@ -201,11 +202,13 @@ Plan LocalSearchPlanner::best_start(const Task& task, const Targets& targets, Pl
   const std::chrono::duration<double> explorer_time(kExplorerVisitS * targets.end());
   for (Planner* const planner : std::initializer_list<Planner*>{&depth_first, &beam, explorer_.get()}) {
     if (is_met(bound, best.prize) || passed(deadline)) break;
+    if (planner == &beam && !beam_fits(task.view, BeamOptions())) continue;
     const Deadline until = share_of(deadline, kStartShare);
     if (planner == explorer_.get() && until && steady_clock::now() + explorer_time > *until) continue;
     best = better_of(std::move(best), planner->plan(task, until, report));
+    if (best.optimal) break;
   }
-  best.bound = bound;
+  best.bound = best.optimal ? best.prize : bound;
   return best;
 }
 

@@ -13,7 +13,7 @@ void Route::assign(const std::vector<int>& order, const std::vector<double>& lin
   for (std::size_t i = 0; i <= order.size(); ++i) {
     const int target = i < order.size() ? order[i] : end;
     stops_[last].next = target;
-    stops_[last].link = std::min(links[i], targets_->cost(last, target));
+    stops_[last].link = known_or(links[i], last, target);
     stops_[target].previous = last;
     cost_ += stops_[last].link;
     if (target != end) prize_ += targets_->prize(target);
@@ -21,6 +21,11 @@ void Route::assign(const std::vector<int>& order, const std::vector<double>& lin
   }
   renumber();
   keep();
+}
+
+double Route::known_or(double link, int from, int to) const {
+  const double known = targets_->cost(from, to);
+  return known != kNoLimit ? known : link;
 }
 
 void Route::insert(int target, int after, double in, double out) {
@@ -32,7 +37,7 @@ void Route::remove(int target) {
   const Stop& stop = stops_[target];
   const double in = stops_[stop.previous].link;
   changes_.push_back({Kind::kRemoved, target, stop.previous, in, stop.link});
-  take(target, std::min(targets_->cost(stop.previous, stop.next), in + stop.link));
+  take(target, known_or(in + stop.link, stop.previous, stop.next));
 }
 
 void Route::reverse(int first, int last, double in, double out) {

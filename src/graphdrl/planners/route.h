@@ -12,6 +12,8 @@ namespace graphdrl {
 // first is known at once, and putting one in renumbers nothing [Dietz 1982]. Changes since keep() can be undone.
 class Route {
  public:
+  static constexpr int kNone = -1;
+
   explicit Route(const Targets& targets) : targets_(&targets), stops_(targets.end() + 1) {}
 
   // Starts anew. links: the cost of the way to each of `order`, and to the end, where it is not known.
@@ -44,16 +46,15 @@ class Route {
   void undo();
   double kept_cost() const { return kept_cost_; }
   double kept_prize() const { return kept_prize_; }
-  // Calls touch(target) for the targets of changes since keep().
+  // Calls touch(target, other) for every change since keep(): what was changed, and what it came after, or kNone.
   template <typename Touch>
   void changed(const Touch& touch) const {
-    for (const Change& change : changes_) touch(change.target);
+    for (const Change& change : changes_) touch(change.target, change.other);
   }
 
   std::vector<int> order() const;  // without target 0 and the end
 
  private:
-  static constexpr int kNone = -1;
   static constexpr std::int64_t kGap = std::int64_t{1} << 32;
   struct Stop {
     int next = kNone;
@@ -70,6 +71,7 @@ class Route {
     double out;
   };
 
+  double known_or(double link, int from, int to) const;  // what the way costs, where that is known
   void put(int target, int after, double in, double out);
   void take(int target, double link);
   void turn(int first, int last, double in, double out);

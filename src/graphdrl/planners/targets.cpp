@@ -1,6 +1,7 @@
 #include "graphdrl/planners/targets.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace graphdrl {
 namespace {
@@ -9,6 +10,7 @@ using Next = NearestFirst::Next;
 
 // Where targets are few and far between, a search for the nearest looks at so many nodes at most.
 constexpr int kMostMet = 32 * Targets::kNearest;
+constexpr int kMetPerLook = 4096;  // nodes between two looks at the clock
 
 }  // namespace
 
@@ -27,7 +29,7 @@ Targets::Targets(const Task& task, Deadline deadline) : view_(task.view) {
   const NodeSet visited = task.visited_before();
   add(task.start, task.visited.empty() ? view.prize(task.start) : 0);
   NearestFirst search;
-  search.run(view.open(), task.start, limit, [&](NodeId node, double cost) {
+  search.run_cheapest(view.open(), task.start, limit, [&](NodeId node, double cost) {
     if (visited.contains(node) || view.prize(node) <= 0 || node == task.end) return Next::kThrough;
     if (cost + cost_to_end(node) <= limit) add(node, view.prize(node));
     return Next::kThrough;
@@ -47,6 +49,7 @@ void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near
   NearestFirst search;
   const bool fills_table = !table_.empty() && &near == &near_;
   begin.assign(1, 0);
+  int met_since_look = 0;
   for (int from = 0; from < end(); ++from) {
     double* const row = fills_table ? table_.data() + static_cast<std::size_t>(from) * prizes_.size() : nullptr;
     if (row != nullptr) {
@@ -69,9 +72,58 @@ void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near
       return row == nullptr && (left == 0 || met >= kMostMet) ? Next::kEnd : Next::kThrough;
     });
     begin.push_back(std::ssize(near));
-    if (from % 16 == 0 && passed(deadline)) complete_ = false;
-    if (!complete_) break;
+    met_since_look += met;
+    if (met_since_look < kMetPerLook) continue;
+    met_since_look = 0;
+    if (passed(deadline)) complete_ = false;
+    if (!complete_) return;
   }
+}
+
+Targets Targets::after(int first) const {
+  Targets rest = *this;
+  // The new start takes number 0, the last target the place that it leaves.
+  const int last = end() - 1;
+  std::vector<int> old(last);  // by new number
+  std::iota(old.begin(), old.end(), 0);
+  old[0] = first;
+  if (first != last) old[first] = last;
+  std::vector<int> number(nodes_.size(), -1);
+  for (int target = 0; target < last; ++target) number[old[target]] = target;
+
+  rest.numbers_[nodes_[0]] = -1;
+  rest.total_prize_ -= prizes_[0] + prizes_[first];
+  for (int target = 0; target < last; ++target) {
+    rest.numbers_[nodes_[old[target]]] = target;
+    rest.nodes_[target] = nodes_[old[target]];
+    rest.prizes_[target] = target == 0 ? 0 : prizes_[old[target]];
+    rest.to_end_[target] = to_end_[old[target]];
+  }
+  rest.nodes_.resize(last);
+  rest.to_end_.resize(last);
+  rest.prizes_.resize(last + 1);
+  rest.prizes_[last] = prizes_[end()];
+  rest.table_.resize(rest.nodes_.size() * rest.prizes_.size());
+  for (int from = 0; from < last; ++from) {
+    const double* const all = row(old[from]);
+    double* const left = rest.table_.data() + static_cast<std::size_t>(from) * rest.prizes_.size();
+    for (int to = 0; to < last; ++to) left[to] = all[old[to]];
+    left[last] = all[end()];
+  }
+  const auto take_lists = [&](const std::vector<int>& lists, const std::vector<std::int64_t>& begin,
+                              std::vector<int>& rest_lists, std::vector<std::int64_t>& rest_begin) {
+    rest_lists.clear();
+    rest_begin.assign(1, 0);
+    for (int target = 0; target < last; ++target) {
+      for (const int near : list(lists, begin, old[target])) {
+        if (number[near] >= 0) rest_lists.push_back(number[near]);
+      }
+      rest_begin.push_back(std::ssize(rest_lists));
+    }
+  };
+  take_lists(near_, near_begin_, rest.near_, rest.near_begin_);
+  if (!symmetric()) take_lists(into_, into_begin_, rest.into_, rest.into_begin_);
+  return rest;
 }
 
 double Targets::searched_cost(int from, int to, double most, NearestFirst& search) const {
@@ -88,6 +140,10 @@ double Targets::searched_cost(int from, int to, double most, NearestFirst& searc
 double Targets::near_cost(int from, int to) const {
   for (std::int64_t i = near_begin_[from]; i < near_begin_[from + 1]; ++i) {
     if (near_[i] == to) return near_cost_[i];
+  }
+  if (!symmetric()) return kNoLimit;
+  for (std::int64_t i = near_begin_[to]; i < near_begin_[to + 1]; ++i) {
+    if (near_[i] == from) return near_cost_[i];
   }
   return kNoLimit;
 }

@@ -21,6 +21,10 @@ class Targets {
   // once the deadline passes [complete()].
   Targets(const Task& task, Deadline deadline);
 
+  // What is left of these once a walk has gone to `first`, which becomes the start; the start before is none any more.
+  // REQUIRES: there is a table; `first` is neither the start nor the end.
+  Targets after(int first) const;
+
   bool complete() const { return complete_; }
   bool symmetric() const { return into_begin_.empty(); }
   int end() const { return static_cast<int>(nodes_.size()); }  // the number of the end; how many others there are
