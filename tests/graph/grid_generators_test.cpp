@@ -86,6 +86,28 @@ TEST(GridGenerators, RoomsAreConnectedAndRepeatable) {
   }
 }
 
+TEST(GridGenerators, RealLookingMapsAreConnectedAndRepeatable) {
+  const auto check = [](int least_free, const auto& draw) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      Rng one(seed);
+      Rng same(seed);
+      const GridMap map = draw(one);
+      EXPECT_EQ(parts(map), 1);
+      EXPECT_GE(free_cells(map), least_free);
+      EXPECT_LT(free_cells(map), map.rows * map.cols);
+      EXPECT_EQ(map.blocked, draw(same).blocked);
+    }
+  };
+  check(50, [](Rng& rng) { return caves_map(20, 31, 0.45, rng); });
+  check(50, [](Rng& rng) { return house_map(20, 31, 5, 0.2, rng); });
+  check(50, [](Rng& rng) { return streets_map(20, 31, 2, 5, 0.2, rng); });
+  Rng rng(1);
+  EXPECT_EQ(free_cells(caves_map(6, 7, 0, rng)), 42);
+  EXPECT_EQ(free_cells(caves_map(6, 7, 1, rng)), 0);
+  EXPECT_EQ(free_cells(house_map(4, 4, 8, 0, rng)), 16) << "a single room";
+  EXPECT_EQ(free_cells(streets_map(9, 9, 2, 3, 1, rng)), 81) << "squares alone";
+}
+
 TEST(GridGenerators, LargeMapsHaveRoomsAndWallsToo) {
   Rng rng(2);
   const GridMap map = rooms_map(601, 601, 4, rng);
