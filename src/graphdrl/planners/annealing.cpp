@@ -49,8 +49,7 @@ Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed)
 
 void Annealing::start(const std::vector<int>& order, const std::vector<double>& links) {
   route_.assign(order, links);
-  // Straight ways may cost more than those that led here [Graph::complete()].
-  while (route_.cost() > limit_ && route_.next(0) != targets_->end()) route_.remove(route_.previous(targets_->end()));
+  while (too_dear() && route_.next(0) != targets_->end()) route_.remove(route_.previous(targets_->end()));
   route_.keep();
   style_ = is_selective(*targets_, route_.prize()) ? kSelective : kOrdering;
   remember();
@@ -98,8 +97,13 @@ void Annealing::remember() {
   if (limit_ > 0) price_ = kPrice * best_prize_ / limit_;
 }
 
+// Straight ways may cost more than those that they take the place of [Graph::complete()].
+bool Annealing::too_dear() const {
+  return !targets_->metric() && route_.cost() > limit_;
+}
+
 bool Annealing::accept(double temperature) {
-  if (route_.cost() > limit_) return false;
+  if (too_dear()) return false;
   const double gain = route_.prize() - route_.kept_prize() - price_ * (route_.cost() - route_.kept_cost());
   return gain >= 0 || rng_.uniform() < std::exp(gain / temperature);
 }

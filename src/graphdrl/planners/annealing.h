@@ -74,6 +74,7 @@ class Annealing {
   void improve();
   void settle_links();
   bool two_opt(int target);
+  bool too_dear() const;
   bool accept(double temperature);
   void remember();
   void enqueue(int target);

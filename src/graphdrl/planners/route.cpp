@@ -25,7 +25,8 @@ void Route::assign(const std::vector<int>& order, const std::vector<double>& lin
 
 double Route::known_or(double link, int from, int to) const {
   const double known = targets_->cost(from, to);
-  return known != kNoLimit ? known : link;
+  if (known == kNoLimit) return link;
+  return targets_->metric() ? std::min(known, link) : known;  // less by rounding alone
 }
 
 void Route::insert(int target, int after, double in, double out) {

@@ -26,6 +26,9 @@ class Targets {
   Targets after(int first) const;
 
   bool complete() const { return complete_; }
+  // Whether no way through other targets is cheaper than the cost known: everywhere but in a complete graph whose costs
+  // are not metric.
+  bool metric() const { return view_.open().straight_ways_suffice(); }
   bool symmetric() const { return into_begin_.empty(); }
   int end() const { return static_cast<int>(nodes_.size()); }  // the number of the end; how many others there are
   NodeId node(int target) const { return nodes_[target]; }
