@@ -163,7 +163,8 @@ int print_table(const SharedExplorer& explorer, bool quick) {
   cases.push_back(of_split({"obstacles", 5}, 1.1, many, kAllStarts, true, true));
   cases.push_back(of_split({"loop-maze", 11}, 1.0, some, 1, true));
   for (const double budget : {1.25, 1.5, 2.0}) cases.push_back(of_split({"loop-maze", 11}, budget, some, 1, true));
-  for (const char* const family : {"maze", "braided-maze", "rooms", "obstacles"}) {
+  for (const char* const family :
+       {"maze", "braided-maze", "rooms", "obstacles", "open", "caves", "houses", "streets"}) {
     cases.push_back(of_split({family, 11}, 1.0, some, 1, true));
   }
   for (const double budget : {1.5, 2.0}) cases.push_back(of_split({"obstacles", 11}, budget, some, 1, true));
@@ -177,7 +178,13 @@ int print_table(const SharedExplorer& explorer, bool quick) {
       }
     }
   }
-  for (const WorldSpec& spec : {WorldSpec{"obstacles", 60}, {"loop-maze", 61}, {"rooms", 60}}) {
+  for (const WorldSpec& spec : {WorldSpec{"obstacles", 60},
+                                {"loop-maze", 61},
+                                {"rooms", 60},
+                                {"open", 60},
+                                {"caves", 60},
+                                {"houses", 60},
+                                {"streets", 60}}) {
     cases.push_back(of_split(spec, 1.0, quick ? 2 : 48, 1));
   }
   std::erase_if(cases, [](const Case& one) { return one.name.find(only) == std::string::npos; });

@@ -55,16 +55,9 @@ TEST(Explorer, RefusesWeightsThatGiveNoNumbers) {
   EXPECT_THROW(planner.plan({.view = world, .start = 0, .budget = 9}), Error);
 }
 
-struct Choices {
-  int same = 0;  // as the first visit of the least shortfall
-  int nearer = 0;
-  int farther = 0;
-  int indifferent = 0;  // not the least even with the cost counted in
-};
-
-// Walks through a world, a third of the time at random.
-Choices compare_choices(const WorldSpec& spec) {
-  const World world = split_world(spec, Split::kValidation, 0);
+// Walks at random through a world whose nodes have prizes or not. Gives how many states had most work out of scope.
+int check_choices(const World& world) {
+  int unseen = 0;
   ExplorerScorer scorer(builtin_explorer());
   Rng rng(2);
   NodeSet visited(world.node_count());
@@ -72,47 +65,49 @@ Choices compare_choices(const WorldSpec& spec) {
                          .visited_count = 0,
                          .position = world.valid_nodes()[0],
                          .spendable = 1.0 * world.valid_count()};
+  const double mean_prize = world.total_prize() / world.valid_count();
   ExplorerBatch batch;
   std::vector<float> shortfall;
-  Choices result;
-  for (int i = 0; i < 200; ++i) {
+  int states = 0;
+  for (;; ++states) {
     visited.insert(state.position);
     ++state.visited_count;
     batch.clear();
     const auto visits = scorer.encoder().append(world, state, kExplorerScope, batch);
     if (visits.empty()) break;
     scorer.shortfalls(batch, shortfall);
-    const auto least =
-        static_cast<std::size_t>(std::min_element(shortfall.begin(), shortfall.end()) - shortfall.begin());
+    const auto score = [&](std::size_t v) {
+      return shortfall[v] - (world.has_prizes() ? world.prize(visits[v].node) / mean_prize : 0);
+    };
     const std::size_t choice = scorer.choose(world, batch, visits);
-    (choice == least ? result.same : visits[choice].cost <= visits[least].cost ? result.nearer : result.farther) += 1;
-    const double plenty = std::clamp(0.1 * (batch.budget_per_work[0] - 1.2), 0.0, 1.0);
-    const auto score = [&](std::size_t v) { return shortfall[v] + (0.5 * batch.unseen[0] + plenty) * visits[v].cost; };
-    for (std::size_t v = 0; v < visits.size(); ++v) {
-      if (score(v) >= score(choice) - 1e-4) continue;
-      ++result.indifferent;
-      EXPECT_LE(score(choice), score(v) + 0.4 * batch.unseen[0] * batch.unseen[0] + 1e-4);
-      EXPECT_LE(visits[choice].cost, visits[v].cost);
-    }
-    const FirstVisit next = visits[rng.below(3) == 0 ? rng.below(static_cast<std::uint32_t>(visits.size())) : choice];
+    double least = score(0);
+    for (std::size_t v = 1; v < visits.size(); ++v) least = std::min(least, score(v));
+    const double indifference = 0.8 * batch.unseen[0] * batch.unseen[0];
+    unseen += batch.unseen[0] > 0.5;
+    EXPECT_LE(score(choice), least + indifference + 1e-4);
+    for (std::size_t v = 0; v < choice; ++v) EXPECT_GT(score(v), least + indifference - 1e-4) << "nearer";
+    const FirstVisit next = visits[rng.below(static_cast<std::uint32_t>(visits.size()))];
     state.position = next.node;
     state.spendable -= next.cost;
   }
-  return result;
+  EXPECT_GT(states, 10);
+  return unseen;
 }
 
-TEST(Explorer, TakesTheNetworksChoiceWhereItSeesAllTheWork) {
-  const Choices choices = compare_choices({"obstacles", 8});
-  EXPECT_GT(choices.same, 20);
-  EXPECT_EQ(choices.nearer + choices.farther + choices.indifferent, 0);
+TEST(Explorer, TakesTheFirstVisitThatTheNetworkPrefers) {
+  EXPECT_EQ(check_choices(split_world({"obstacles", 8}, Split::kValidation, 0)), 0);
 }
 
 TEST(Explorer, PrefersNearerFirstVisitsWhereMostWorkIsOutOfSight) {
-  const Choices choices = compare_choices({"obstacles", 30});
-  EXPECT_GT(choices.same, 20);
-  EXPECT_GT(choices.nearer, 20);
-  EXPECT_EQ(choices.farther, 0);
-  EXPECT_GT(choices.indifferent, 20);
+  EXPECT_GT(check_choices(split_world({"obstacles", 30}, Split::kValidation, 0)), 10);
+}
+
+TEST(Explorer, CountsThePrizeOfAFirstVisit) {
+  const World plain = split_world({"obstacles", 8}, Split::kValidation, 0);
+  Rng rng(3);
+  std::vector<double> prizes;
+  for (NodeId node = 0; node < plain.node_count(); ++node) prizes.push_back(rng.below(7));
+  check_choices(World("prizes", plain.graph(), plain.blocked(), {}, prizes));
 }
 
 }  // namespace

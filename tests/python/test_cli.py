@@ -79,8 +79,9 @@ def test_evaluate_takes_ones_own_maps(run, tmp_path):
 
 
 def test_large_maps_have_no_optimum(run, tmp_path):
-    (tmp_path / "large.txt").write_text(("." * 12 + "\n") * 12)
-    result = evaluate(run, "--maps", tmp_path / "large.txt", "--budget", "1x", "--episodes", "4")
+    (tmp_path / "large.txt").write_text(("." * 50 + "\n") * 50)
+    policies = ["--policy", "nearest", "--policy", "exact"]
+    result = evaluate(run, "--maps", tmp_path / "large.txt", "--budget", "1x", "--episodes", "4", *policies)
     rows = {row["policy"]: row for row in result["rows"]}
     assert all(row["optimum"] is None for row in rows.values())
     assert rows["exact"]["mean"] is None and rows["nearest"]["mean"] > 50
@@ -367,11 +368,13 @@ def loaded_libraries(program):
     return dict(re.findall(r"(\S+) => (\S+)", output))
 
 
-def test_graphdrl_loads_no_libtorch_and_only_builds_with_it_load_openblas_openmp():
+def test_graphdrl_loads_no_libtorch_and_no_openblas_but_the_openmp_build():
     small = loaded_libraries("graphdrl")
     assert not [name for name in small if "torch" in name]
+    # CLP's own libraries load whichever BLAS there is.
+    for name, library in small.items():
+        assert "openblas" not in name or "openblas-openmp" in os.path.realpath(library)
     if not WITH_TORCH:
-        assert not [name for name in small if "blas" in name]
         return
     large = loaded_libraries("graphdrl-train")
     assert [name for name in large if name.startswith("libtorch_cpu")]
@@ -586,7 +589,7 @@ def test_generated_worlds_are_read_back_and_the_same_again(run, tmp_path):
 
 
 def test_an_explorer_is_trained_used_and_looked_into(run, tmp_path):
-    small = ["--largest", "5", "--walks", "20", "--updates", "5", "--batch-size", "8", "--teacher-width", "4"]
+    small = ["--largest", "5", "--walks", "20", "--updates", "5", "--batch-size", "8", "--teacher-steps", "1"]
     process = run("graphdrl", "train", "--rounds", "2", *small, "--out", tmp_path / "run", "--json")
     assert process.returncode == 0, process.stderr
     result = json.loads(process.stdout)

@@ -17,7 +17,7 @@ TEST(TrainOptions, HaveDefaultsForEachPreset) {
   const TrainOptions paper = default_options(kPaperPreset);
   EXPECT_EQ(explorer.batch_size, 64);
   EXPECT_EQ(paper.batch_size, 32);
-  EXPECT_EQ(explorer.rounds, 210);
+  EXPECT_EQ(explorer.rounds, 240);
   EXPECT_EQ(paper.rounds, 0) << "not the paper's";
   EXPECT_EQ(paper.maps, std::vector<std::string>{"paper:a"});
   EXPECT_TRUE(explorer.maps.empty());

@@ -39,7 +39,7 @@ inline TrainOptions short_explorer() {
   options.updates = 6;
   options.batch_size = 8;
   options.replay_capacity = 50;  // wraps around
-  options.teacher_width = 4;
+  options.teacher_steps = 1;
   options.checkpoint_every = 1;
   return options;
 }

@@ -1,7 +1,8 @@
 // The explorer's network: one gated graph convolution over a state's valid nodes, and a head that scores every first
 // visit by the embeddings of its target, of the current node and of the whole graph. Its output is what a first visit
 // is going to cost in the end: how many nodes the best walk after it falls short of the state's ceiling
-// [explorer_features.h].
+// [explorer_features.h], and kWorthOfCost more for every mean edge that the walk costs beyond one a node. So it tells
+// first visits apart where the budget suffices for everything, too.
 //
 // Renumbering a world's nodes renumbers the scores and changes nothing else, but for ties at the edge of the scope. No
 // tensor library is needed.
@@ -16,12 +17,14 @@
 
 namespace graphdrl {
 
-inline constexpr GatedGraphConvShape kExplorerConvShape = {kExplorerNodeFeatureCount, 32, 8};
+inline constexpr GatedGraphConvShape kExplorerConvShape = {kExplorerNodeFeatureCount, 48, 8};
 static_assert(kExplorerConvShape.inputs <= kExplorerConvShape.width);
 inline constexpr int kExplorerHeadInputs =
     3 * kExplorerConvShape.width + kExplorerNodeFeatureCount + kExplorerVisitFeatureCount;
 inline constexpr LinearShape kExplorerHead1 = {kExplorerHeadInputs, 64};
 inline constexpr LinearShape kExplorerHead2 = {64, 1};
+
+inline constexpr double kWorthOfCost = 0.25;  // nodes
 
 class ExplorerParameters : public ParameterBuffer {
  public:

@@ -23,7 +23,7 @@ namespace graphdrl {
 
 inline constexpr int kExactMaxNodes = 64;                  // valid nodes that the budget reaches: a set is one word
 inline constexpr std::size_t kExactMaxStates = 2'000'000;  // then a search gives up
-inline constexpr double kExactMaxWork = 2e9;               // of branch and cut: about a minute [LpBound::Effort]
+inline constexpr double kExactMaxWork = 5e7;               // of branch and cut: some seconds [LpBound::Effort]
 
 class SearchOutOfReach : public Error {
  public:

@@ -10,11 +10,8 @@
 namespace graphdrl {
 namespace {
 
-// Of the rule of choose(), both in nodes; chosen on the validation split.
-constexpr double kWorthOfBudget = 0.5;  // of a mean edge's cost, to spend on work out of scope
-constexpr double kWorthOfPlenty = 0.1;  // likewise, for each mean edge a node that is left beyond kPlenty; 1 at most
-constexpr double kPlenty = 1.2;
-constexpr double kIndifference = 0.4;  // by which the nearest may fall behind, all work being out of scope
+// Of the rule of choose(), in nodes; chosen on the validation split (docs/explorer.md).
+constexpr double kIndifference = 0.8;
 
 constexpr int kChoicesPerTick = 8;
 
@@ -56,24 +53,24 @@ bool ExplorerScorer::score(const View& view, std::span<const ExplorationState> s
   }
   if (visits.empty()) return overlooked;
   shortfalls(batch_, shortfall_);
+  const double unit = view.open().mean_cost();
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    visits[i].score = double{shortfall_[i]} - batch_.ceiling[visits[i].state];
+    // Cost up to now counts as cost to come does.
+    const int state = visits[i].state;
+    visits[i].score = double{shortfall_[i]} - batch_.ceiling[state] - kWorthOfCost * states[state].spendable / unit;
   }
   return overlooked;
 }
 
 std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
   shortfalls(batch, shortfall_);
-  const double unseen = batch.unseen[0];
-  const double unit = view.open().mean_cost();
-  const double worth =
-      kWorthOfBudget * unseen + std::clamp(kWorthOfPlenty * (batch.budget_per_work[0] - kPlenty), 0.0, 1.0);
   const double mean_prize = view.total_prize() / view.valid_count();
-  for (std::size_t i = 0; i < visits.size(); ++i) {
-    shortfall_[i] += static_cast<float>(worth * visits[i].cost / unit);
-    if (view.has_prizes() && mean_prize > 0)
+  if (view.has_prizes() && mean_prize > 0) {
+    for (std::size_t i = 0; i < visits.size(); ++i) {
       shortfall_[i] -= static_cast<float>(view.prize(visits[i].node) / mean_prize);
+    }
   }
+  const double unseen = batch.unseen[0];
   const double most = *std::min_element(shortfall_.begin(), shortfall_.end()) + kIndifference * unseen * unseen;
   const auto choice = std::find_if(shortfall_.begin(), shortfall_.end(), [&](float score) { return score <= most; });
   return static_cast<std::size_t>(choice - shortfall_.begin());
@@ -108,7 +105,7 @@ Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Repo
                          .to_end = &to_end};
   ExplorerBatch batch;
   std::vector<NodeId> first_visits;
-  bool optimal = true;
+  bool optimal = task.view.open().straight_ways_suffice();
   do {
     batch.clear();
     const std::span<const FirstVisit> visits = scorer_->encoder().append(task.view, state, kExplorerScope, batch);

@@ -31,7 +31,8 @@ class ExplorerScorer final : public FirstVisitScorer {
     network_.set_parameters(*parameters_);
   }
 
-  // A score is the shortfall less the state's ceiling: how many nodes will be left, but for what all states share.
+  // A score is the shortfall less the state's ceiling and the worth of what is left to spend: how many nodes will be
+  // left, and what the whole walk costs, but for what all states share.
   // Throws Error where the network's weights are so large that it gives no number.
   bool score(const View& view, std::span<const ExplorationState> states, std::vector<ScoredVisit>& visits) override;
   int most_states() const override { return 16; }  // a few milliseconds
@@ -42,11 +43,8 @@ class ExplorerScorer final : public FirstVisitScorer {
   void shortfalls(const ExplorerBatch& batch, std::vector<float>& shortfall);
 
   // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. A score is the
-  // shortfall, less the prize in mean prizes where there are prizes, and for every mean edge of the first visit's cost
-  // 0.5 u nodes, with a share u of the work out of scope, and 0.1 (b - 1.2) nodes, 0 to 1, with b mean edges left for
-  // each unvisited node. The nearest whose score is within 0.4 u² of the least: the one of the least shortfall where
-  // all the work is in scope and the budget is short. In worlds much larger than the scope, and with budget to spare,
-  // which the network would waste, this visits several points more than the shortfall alone (docs/explorer.md).
+  // shortfall, less the prize in mean prizes where there are prizes. The nearest whose score is within 0.8 u² nodes of
+  // the least, with a share u of the work out of scope: the less the network sees, the less its word counts.
   std::size_t choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
 
   ExplorerEncoder& encoder() { return encoder_; }

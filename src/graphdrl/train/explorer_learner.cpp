@@ -145,8 +145,10 @@ double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rat
 void ExplorerLearner::bootstrap_labels(std::span<const Lesson* const> lessons) {
   batch_.clear();
   next_.clear();
+  std::vector<double> cost;  // of the first visit made, in mean edges
   for (const Lesson* const lesson : lessons) {
     const FirstVisit choice = lesson->append_to(batch_, encoder_)[lesson->choice];
+    cost.push_back(choice.cost / lesson->at->world.open().mean_cost());
     Lesson after = *lesson;
     visit(after, choice);
     after.append_to(next_, encoder_);
@@ -161,7 +163,7 @@ void ExplorerLearner::bootstrap_labels(std::span<const Lesson* const> lessons) {
   std::size_t next = 0;   // and in next_
   for (std::size_t i = 0; i < lessons.size(); ++i) {
     const int index = static_cast<int>(i);
-    double gain = 1;
+    double gain = 1 - kWorthOfCost * (cost[i] - 1);
     if (next < next_count && next_.state[next] == index) {
       std::size_t best = next;
       for (; next < next_count && next_.state[next] == index; ++next) {

@@ -27,7 +27,7 @@ std::uint64_t walk_seed(const TrainOptions& options, std::int64_t walk) {
 LessonOptions lesson_options(const TrainOptions& options) {
   LessonOptions lessons;
   lessons.worlds = training_worlds(static_cast<int>(options.largest));
-  lessons.teacher_width = options.teacher == "search" ? static_cast<int>(options.teacher_width) : 0;
+  lessons.teacher_steps = options.teacher == "search" ? static_cast<int>(options.teacher_steps) : 0;
   lessons.lead = options.lead;
   return lessons;
 }

@@ -70,7 +70,7 @@ class Unpacker {
     label_at_ += static_cast<std::size_t>(labels);
     ExplorerBatch batch;
     const auto visits = std::ssize(lesson.append_to(batch, encoder_));
-    const bool labelled = options_.teacher_width > 0;
+    const bool labelled = options_.teacher_steps > 0;
     return labels == (labelled ? visits : 0) && packed_.choice[i] >= 0 && packed_.choice[i] < visits;
   }
 

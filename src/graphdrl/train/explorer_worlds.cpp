@@ -5,7 +5,7 @@ namespace {
 
 // Most are small: there the beam's values are nearly exact, and several lessons cost as much as one of a large world.
 // Larger ones are worth 0.7 points on graphs of 200 nodes and cost grids up to 2 (docs/explorer.md, "What pays").
-constexpr int kSides[] = {4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 20};
+constexpr int kSides[] = {4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 20, 26};
 constexpr int kNodes[] = {16, 33, 55, 77, 110, 140};
 constexpr int kNodesPerSide = 7;
 
@@ -31,7 +31,7 @@ std::vector<WorldSpec> training_worlds(int largest) {
   for (const int side : kSides) {
     if (side > largest) break;
     add(worlds, side == kPaperSide ? kPaperSideCopies : 1, {"obstacles", side});
-    add(worlds, 1, {"rooms", side});
+    for (const char* const family : {"rooms", "open", "caves", "houses", "streets"}) add(worlds, 1, {family, side});
     if (side % 2 == 0) continue;  // mazes have an odd number of cells a side
     const bool hard = side >= kLeastHardMaze && side <= kMostHardMaze;
     for (const char* const family : {"maze", "loop-maze", "braided-maze"}) {

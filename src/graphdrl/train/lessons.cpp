@@ -4,30 +4,24 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
-#include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/explorer.h"
+#include "graphdrl/train/teacher.h"
 
 namespace graphdrl {
 namespace {
 
-// First visits that are labelled: the nearest, and others at random (docs/explorer.md, "Training").
-constexpr std::size_t kNearestLabelled = 3;
+// First visits that are labelled: the one that the best walk known makes, the nearest, and others at random
+// (docs/explorer.md, "Training").
+constexpr std::size_t kFirstLabelled = 4;
 constexpr std::size_t kMostLabelled = 6;
-constexpr int kTeacherBranching = 8;  // twice as many cost twice as much and value hardly better
 
 // Columns of ExplorerBatch::visit_x, and what undoes their scale [explorer_features.h].
 constexpr int kVisitCost = 0;
 constexpr int kChangeOfPenalties = 1;
 constexpr float kCostScale = 8;
 constexpr float kPenaltyScale = 4;
-
-// How many nodes a beam visits from here.
-int gain_by_search(const Lesson& walk, int width) {
-  const Task task = rest_of(walk);
-  const Plan plan = beam_plan(task, {.width = width, .branching = kTeacherBranching, .cut_ties = true});
-  return plan.visited - task.visited.count();
-}
 
 // The start of a random walk with `ratio` mean edges to spend for each valid node.
 Lesson begin_walk(const std::shared_ptr<LessonWorld>& at, NodeId start, double ratio) {
@@ -43,21 +37,29 @@ Lesson begin_walk(const std::shared_ptr<LessonWorld>& at, NodeId start, double r
   return walk;
 }
 
-// What the first visits of a state are worth by search, or kUnlabelled.
-std::vector<float> search_labels(const Lesson& walk, std::span<const FirstVisit> visits, double ceiling, int width,
-                                 Rng& rng) {
+// The place of the first visit that the best walk known makes; the first of all where it is not in scope.
+std::size_t best_known(const Task& task, std::span<const FirstVisit> visits, Teacher& teacher) {
+  const NodeId node = teacher.next_visit(task);
+  const auto found =
+      std::find_if(visits.begin(), visits.end(), [&](const FirstVisit& visit) { return visit.node == node; });
+  return found == visits.end() ? 0 : static_cast<std::size_t>(found - visits.begin());
+}
+
+// How far first visits fall short of the ceiling, or kUnlabelled.
+std::vector<float> labels(const Task& task, std::span<const FirstVisit> visits, double ceiling, Teacher& teacher,
+                          Rng& rng) {
+  teacher.look(task);
   std::vector<float> shortfall(visits.size(), kUnlabelled);
   std::vector<std::size_t> order(visits.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  for (std::size_t i = kNearestLabelled; i + 1 < order.size(); ++i) {
+  const auto best = order.begin() + static_cast<std::ptrdiff_t>(best_known(task, visits, teacher));
+  std::rotate(order.begin(), best, best + 1);
+  for (std::size_t i = kFirstLabelled; i + 1 < order.size(); ++i) {
     std::swap(order[i], order[i + rng.below(static_cast<std::uint32_t>(order.size() - i))]);
   }
   if (order.size() > kMostLabelled) order.resize(kMostLabelled);
   for (const std::size_t first : order) {
-    Lesson after = walk;
-    visit(after, visits[first]);
-    const int gain = 1 + gain_by_search(after, width);
-    shortfall[first] = static_cast<float>(ceiling - gain);
+    shortfall[first] = static_cast<float>(ceiling - teacher.value(task, visits[first]));
   }
   return shortfall;
 }
@@ -75,13 +77,8 @@ std::size_t best_by_rank(const ExplorerBatch& batch, std::size_t count) {
   return best;
 }
 
-// The least of all that are labelled. REQUIRES: the first of all is.
 std::size_t least_of(std::span<const float> shortfall) {
-  std::size_t least = 0;
-  for (std::size_t first = 0; first < shortfall.size(); ++first) {
-    if (shortfall[first] < shortfall[least]) least = first;
-  }
-  return least;
+  return static_cast<std::size_t>(std::min_element(shortfall.begin(), shortfall.end()) - shortfall.begin());
 }
 
 }  // namespace
@@ -109,7 +106,9 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
   // No ownership: the parameters stay the caller's.
   ExplorerScorer scorer(SharedExplorer(std::shared_ptr<void>(), &parameters));
   const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
-  const double ratio = options.least_budget + (options.most_budget - options.least_budget) * rng.uniform();
+  const auto between = [&](double least, double most) { return least + (most - least) * rng.uniform(); };
+  const double ratio = chance(options.ample) ? between(options.most_budget, options.most_ample_budget)
+                                             : between(options.least_budget, options.most_budget);
   Lesson walk = begin_walk(at, start, ratio);
   if (chance(options.small_scope)) {
     walk.scope = options.least_scope +
@@ -117,6 +116,8 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
   }
   const bool by_network = chance(options.lead);
   const double share = static_cast<double>(options.states_per_walk) / (std::min(ratio, 1.0) * world.valid_count());
+  std::optional<Teacher> teacher;
+  if (options.teacher_steps > 0) teacher.emplace(options.teacher_steps, rng.next()).begin(rest_of(walk));
 
   std::vector<Lesson> lessons;
   ExplorerBatch batch;
@@ -126,9 +127,8 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
     const auto visits = walk.append_to(batch, scorer.encoder());
     if (visits.empty()) return lessons;
     Lesson lesson = walk;
-    const bool kept = chance(share) && (visits.size() > 1 || options.teacher_width == 0);
-    const bool taught = kept && options.teacher_width > 0;
-    if (taught) lesson.shortfall = search_labels(walk, visits, batch.ceiling[0], options.teacher_width, rng);
+    const bool kept = chance(share) && (visits.size() > 1 || !teacher);
+    if (kept && teacher) lesson.shortfall = labels(rest_of(walk), visits, batch.ceiling[0], *teacher, rng);
     std::size_t choice = 0;
     if (chance(options.explore)) {
       choice = rng.below(static_cast<std::uint32_t>(visits.size()));
@@ -136,10 +136,11 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
       scorer.shortfalls(batch, shortfall);
       choice = least_of(shortfall);
     } else {
-      choice = taught ? least_of(lesson.shortfall) : best_by_rank(batch, visits.size());
+      choice = teacher ? best_known(rest_of(walk), visits, *teacher) : best_by_rank(batch, visits.size());
     }
     lesson.choice = static_cast<int>(choice);
     if (kept) lessons.push_back(std::move(lesson));
+    if (teacher) teacher->visited(visits[choice].node);
     visit(walk, visits[choice]);
   }
 }

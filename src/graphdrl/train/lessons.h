@@ -16,11 +16,13 @@ namespace graphdrl {
 // The defaults are what the explorer in the program was trained with; only `lead` was varied (docs/explorer.md).
 struct LessonOptions {
   std::vector<WorldSpec> worlds;  // drawn from with equal chances
-  int teacher_width = 0;          // of the beam that values a first visit; 0 to value none
+  int teacher_steps = 0;          // of the search for one label [teacher.h]; 0 to label none
   double lead = 0;                // chance of a walk to be led by the network's least shortfall, else by search
   double least_budget = 0.5;      // times valid nodes and mean cost
-  double most_budget = 1.7;
-  double small_scope = 0.25;  // chance of a walk to be seen through a smaller scope than the explorer's,
+  double most_budget = 1.5;
+  double ample = 0.15;  // chance of a budget that is larger still,
+  double most_ample_budget = 3;
+  double small_scope = 0.35;  // chance of a walk to be seen through a smaller scope than the explorer's,
   int least_scope = 24;       // at least this
   int states_per_walk = 6;    // asked for of each walk; about four teach something: others have a single first visit
   double explore = 0.15;      // chance of a random first visit on the way

@@ -78,14 +78,15 @@ std::vector<AnyOptionField> shared_fields() {
 
 std::vector<AnyOptionField> explorer_fields() {
   return {
-      field("rounds", &O::rounds, {.explorer = 210}, whole(1, kMany),
+      field("rounds", &O::rounds, {.explorer = 240}, whole(1, kMany),
             "Rounds of walks and updates; the learning rate falls over all of them"),
-      field("largest", &O::largest, {.explorer = 20}, whole(5, 20),
-            "Largest side of training grids (4 to 11, 13, 15, 16, 20); graphs have up to seven times as many nodes"),
+      field(
+          "largest", &O::largest, {.explorer = 26}, whole(5, 26),
+          "Largest side of training grids (4 to 11, 13, 15, 16, 20, 26); graphs have up to seven times as many nodes"),
       field("teacher", &O::teacher, {.explorer = "search"}, one_of({"search", "double_dqn"}),
             "Where values come from: search, or double_dqn, bootstrapped from the network's own"),
-      field("teacher_width", &O::teacher_width, {.explorer = 24}, whole(1, 100'000),
-            "Width of the beam that values a first visit"),
+      field("teacher_steps", &O::teacher_steps, {.explorer = 2}, whole(1, 1000),
+            "Steps of the search that values a first visit, for each node left to visit"),
       field("ranking", &O::ranking, {.explorer = 1}, from_to(0.0, 1e3),
             "Weight of the loss on which first visit is best, beside that on values"),
       field("lead", &O::lead, {.explorer = 0.6}, from_to(0.0, 1.0), "Share of walks that the network leads"),

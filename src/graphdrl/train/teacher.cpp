@@ -11,9 +11,9 @@ namespace graphdrl {
 namespace {
 
 // Chosen by how often the best first visit, by long searches, is the one labelled best (docs/explorer.md, "Training").
-constexpr double kLookShare = 7.5;   // steps of a look, in those of a label
-constexpr double kBeginShare = 20;   // of the first one
-constexpr double kBeginFrom = 0.3;   // of the annealing's schedule: how hot a search begins
+constexpr double kLookShare = 7.5;  // steps of a look, in those of a label
+constexpr double kBeginShare = 20;  // of the first one
+constexpr double kBeginFrom = 0.3;  // of the annealing's schedule: how hot a search begins
 constexpr double kLookFrom = 0.5;
 constexpr double kLabelFrom = 0.9;  // cold: so that labels differ by what first visits do, and not by chance
 constexpr int kFewSteps = 60;
@@ -50,8 +50,7 @@ void Teacher::search(const Task& task, double steps, double from) {
     if (const int target = targets.target_of(node); target > 0) order.push_back(target);
   }
   const double each = std::clamp(steps_ * targets.end(), kFewSteps, kManySteps);
-  const Found found =
-      improve(targets, task.limit(), std::move(order), static_cast<std::int64_t>(steps * each), from);
+  const Found found = improve(targets, task.limit(), std::move(order), static_cast<std::int64_t>(steps * each), from);
   best_.clear();
   for (const int target : found.order) best_.push_back(targets.node(target));
 }

@@ -45,7 +45,7 @@ class Teacher {
 
   int steps_;
   Rng rng_;
-  std::vector<NodeId> best_;  // what the best walk makes for, in order
+  std::vector<NodeId> best_;      // what the best walk makes for, in order
   std::vector<Targets> targets_;  // of the last look: none or one
   NearestFirst search_;
 };
