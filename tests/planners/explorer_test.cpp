@@ -77,7 +77,8 @@ int check_choices(const World& world) {
     if (visits.empty()) break;
     scorer.shortfalls(batch, shortfall);
     const auto score = [&](std::size_t v) {
-      return shortfall[v] - (world.has_prizes() ? world.prize(visits[v].node) / mean_prize : 0);
+      return shortfall[v] - (world.has_prizes() ? world.prize(visits[v].node) / mean_prize : 0) +
+             0.5 * batch.unseen[0] * visits[v].cost;
     };
     const std::size_t choice = scorer.choose(world, batch, visits);
     double least = score(0);

@@ -10,8 +10,9 @@
 namespace graphdrl {
 namespace {
 
-// Of the rule of choose(), in nodes; chosen on the validation split (docs/explorer.md).
-constexpr double kIndifference = 0.8;
+// Of the rule of choose(), both in nodes; chosen on the validation split (docs/explorer.md).
+constexpr double kWorthOfBudget = 0.5;  // of a mean edge's cost, to spend on work out of scope
+constexpr double kIndifference = 0.8;   // by which the nearest may fall behind, all work being out of scope
 
 constexpr int kChoicesPerTick = 8;
 
@@ -64,14 +65,17 @@ bool ExplorerScorer::score(const View& view, std::span<const ExplorationState> s
 
 std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
   shortfalls(batch, shortfall_);
-  const double mean_prize = view.total_prize() / view.valid_count();
-  if (view.has_prizes() && mean_prize > 0) {
-    for (std::size_t i = 0; i < visits.size(); ++i) {
-      shortfall_[i] -= static_cast<float>(view.prize(visits[i].node) / mean_prize);
-    }
-  }
   const double unseen = batch.unseen[0];
-  const double most = *std::min_element(shortfall_.begin(), shortfall_.end()) + kIndifference * unseen * unseen;
+  const double unit = view.open().mean_cost();
+  const double mean_prize = view.total_prize() / view.valid_count();
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    shortfall_[i] += static_cast<float>(kWorthOfBudget * unseen * visits[i].cost / unit);
+    if (view.has_prizes() && mean_prize > 0)
+      shortfall_[i] -= static_cast<float>(view.prize(visits[i].node) / mean_prize);
+  }
+  // Where edges lead one way, the nearest may be a trap.
+  const double indifference = view.open().directed() ? 0 : kIndifference * unseen * unseen;
+  const double most = *std::min_element(shortfall_.begin(), shortfall_.end()) + indifference;
   const auto choice = std::find_if(shortfall_.begin(), shortfall_.end(), [&](float score) { return score <= most; });
   return static_cast<std::size_t>(choice - shortfall_.begin());
 }

@@ -12,11 +12,10 @@ namespace {
 using Outcome = LinearProgram::Outcome;
 
 constexpr std::int64_t kMostEdges = 4'000;
-constexpr double kStepRounding = 1e-6;  // of a step in which prizes add up
-constexpr double kPrizeMargin = 1e-9;   // relative, of bounds where they add up to anything
-constexpr int kRoundsOfCuts = 5;        // in a branch
-constexpr double kLeastFall = 0.01;     // of the bound by a round of cuts, in steps of prize or parts of the bound
-constexpr int kPatience = 5;            // rounds of cuts at the root without such a fall
+constexpr double kPrizeMargin = 1e-9;  // relative, of bounds where they add up to anything
+constexpr int kRoundsOfCuts = 5;       // in a branch
+constexpr double kLeastFall = 0.01;    // of the bound by a round of cuts, in steps of prize or parts of the bound
+constexpr int kPatience = 5;           // rounds of cuts at the root without such a fall
 
 class BranchAndCut final : public LpBound {
  public:

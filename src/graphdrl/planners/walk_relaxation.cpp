@@ -11,11 +11,10 @@
 namespace graphdrl {
 namespace {
 
-constexpr int kProbed = 8;              // columns to try branching on
-constexpr int kProbeIterations = 30;    // each way
-constexpr double kViolation = 1e-4;     // less is not worth a row
-constexpr double kIntegral = 1e-5;      // what is as near to a whole number is one
-constexpr double kStepRounding = 1e-6;  // of a step, in which costs and prizes add up
+constexpr int kProbed = 8;            // columns to try branching on
+constexpr int kProbeIterations = 30;  // each way
+constexpr double kViolation = 1e-4;   // less is not worth a row
+constexpr double kIntegral = 1e-5;    // what is as near to a whole number is one
 
 // The largest number of which all values are multiples, if they are multiples of a simple fraction; else 0.
 double common_step(const std::vector<double>& values) {

@@ -30,6 +30,8 @@
 
 namespace graphdrl {
 
+inline constexpr double kStepRounding = 1e-6;  // of a step in which costs or prizes add up
+
 class WalkRelaxation {
  public:
   struct Change {  // of a column's bounds
