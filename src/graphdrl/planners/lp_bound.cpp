@@ -71,7 +71,6 @@ class BranchAndCut final : public LpBound {
   std::vector<Change> applied_;
   std::priority_queue<Part> parts_;
   bool begun_ = false;
-  bool cut_ = false;
 };
 
 // What walks can be worth at most, as prizes add up in steps.
