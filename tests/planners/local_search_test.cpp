@@ -10,6 +10,7 @@
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
+#include "graphdrl/planners/annealing.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/planners/route.h"
 
@@ -182,6 +183,43 @@ TEST(Route, IsAListWhoseChangesCanBeUndone) {
       expect_equal(list);
     }
   }
+}
+
+TEST(Annealing, RecombinesRoutes) {
+  const World world = family_world("tree", 100, /*weighted=*/true);
+  const Task task = task_of(world);
+  const Targets targets(task, {});
+  const auto order_of = [&](const Plan& plan) {
+    std::vector<int> order;
+    for (const NodeId node : plan.walk) {
+      const int target = targets.target_of(node);
+      if (target > 0 && std::find(order.begin(), order.end(), target) == order.end()) order.push_back(target);
+    }
+    return order;
+  };
+  const auto contains = [](const std::vector<int>& order, int target) {
+    return std::find(order.begin(), order.end(), target) != order.end();
+  };
+  const std::vector<int> one = order_of(make_planner("nearest", 1)->plan(task));
+  const std::vector<int> other = order_of(make_planner("dfs", 1)->plan(task));
+  int mixed = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Annealing annealing(targets, task.budget, seed);
+    annealing.start(one, std::vector<double>(one.size() + 1, kNoLimit));
+    annealing.recombine(other);
+    const std::vector<int>& child = annealing.best();
+    EXPECT_LE(annealing.best_cost(), task.budget * (1 + 1e-9));
+    EXPECT_EQ(annealing.best_prize(), static_cast<double>(child.size() + 1));  // the start's
+    bool from_one = false;
+    bool from_other = false;
+    for (const int target : child) {
+      EXPECT_TRUE(contains(one, target) || contains(other, target));
+      from_one = from_one || !contains(other, target);
+      from_other = from_other || !contains(one, target);
+    }
+    if (from_one && from_other) ++mixed;
+  }
+  EXPECT_GT(mixed, 5);
 }
 
 TEST(LocalSearch, IsNeverWorseThanWhatItBeginsWith) {

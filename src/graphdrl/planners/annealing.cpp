@@ -20,10 +20,20 @@ constexpr int kLooks = 256;       // at most one copy of the best route in T / k
 constexpr int kGrownNear = 10;    // of a target that a region grows from
 constexpr int kMostFailures = 5;  // to put a target into a region, and it grows no more
 constexpr int kSeedTries = 20;
+constexpr double kLeastRegion = 0.1;  // of all targets, taken from another route
+constexpr double kMostRegion = 0.5;
+constexpr double kLargestRegion = 1000;  // targets: more would take longer than a look at the clock may wait
 constexpr double kRounding = 1e-9;
 constexpr double kTiny = 1e-300;
 
 constexpr double kSelectiveShare = 0.3;  // of the prize left out at the start, from which on the choice counts
+
+bool have_equal_prizes(const Targets& targets) {
+  for (int target = 2; target < targets.end(); ++target) {
+    if (targets.prize(target) != targets.prize(1)) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -43,6 +53,7 @@ Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed)
       style_(kOrdering),
       route_(targets),
       unit_(targets.total_prize() / std::max(1, targets.end())),
+      equal_prizes_(have_equal_prizes(targets)),
       price_(0),
       marked_(targets.end() + 1),
       steps_per_look_(std::max(1, targets.end() / kLooks)) {}
@@ -52,6 +63,38 @@ void Annealing::start(const std::vector<int>& order, const std::vector<double>& 
   while (too_dear() && route_.next(0) != targets_->end()) route_.remove(route_.previous(targets_->end()));
   route_.keep();
   style_ = is_selective(*targets_, route_.prize()) ? kSelective : kOrdering;
+  remember();
+}
+
+void Annealing::recombine(const std::vector<int>& other) {
+  const int targets = targets_->end();
+  const double share = kLeastRegion + (kMostRegion - kLeastRegion) * rng_.uniform();
+  const auto size = static_cast<std::size_t>(std::clamp(share * targets, 1.0, kLargestRegion));
+  grown_.assign(1, static_cast<int>(rng_.below(static_cast<std::uint32_t>(targets))));
+  marked_[grown_[0]] = 1;
+  for (std::size_t i = 0; i < grown_.size() && grown_.size() < size; ++i) {
+    for (const int near : targets_->near(grown_[i])) {
+      if (marked_[near] != 0 || grown_.size() == size) continue;
+      marked_[near] = 1;
+      grown_.push_back(near);
+    }
+  }
+  removed_.clear();
+  for (const int target : grown_) {
+    if (target == 0 || !route_.contains(target)) continue;
+    route_.remove(target);
+    removed_.push_back(target);
+  }
+  for (const int target : other) {
+    if (marked_[target] != 0 && !route_.contains(target)) put_back(target);
+  }
+  for (const int target : grown_) marked_[target] = 0;
+  put_back_removed();
+  if (targets_->symmetric()) improve();
+  if (!targets_->has_table()) settle_links();
+  if (too_dear()) route_.undo();
+  route_.keep();
+  best_prize_ = -1;
   remember();
 }
 
@@ -238,14 +281,28 @@ void Annealing::recreate(int seed) {
   put_back_removed();
 }
 
-// In random order.
 void Annealing::put_back_removed() {
-  for (std::size_t i = removed_.size(); i > 1; --i) {
-    std::swap(removed_[i - 1], removed_[rng_.below(static_cast<std::uint32_t>(i))]);
-  }
+  put_in_random_order(removed_);
   for (const int target : removed_) {
     if (!route_.contains(target)) put_back(target);
   }
+}
+
+// Which is next has a probability in proportion to the square of its prize [Efraimidis and Spirakis 2006].
+void Annealing::put_in_random_order(std::vector<int>& targets) {
+  if (equal_prizes_) {
+    for (std::size_t i = targets.size(); i > 1; --i) {
+      std::swap(targets[i - 1], targets[rng_.below(static_cast<std::uint32_t>(i))]);
+    }
+    return;
+  }
+  keyed_.clear();
+  for (const int target : targets) {
+    const double prize = targets_->prize(target) / unit_;
+    keyed_.emplace_back(-std::log(rng_.uniform()) / (prize * prize), target);
+  }
+  std::sort(keyed_.begin(), keyed_.end());
+  for (std::size_t i = 0; i < targets.size(); ++i) targets[i] = keyed_[i].second;
 }
 
 // The cheapest place for a target that can be paid for; after == kNone where there is none.

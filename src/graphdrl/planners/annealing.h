@@ -1,6 +1,7 @@
 // One chain of the local search.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "graphdrl/base/random.h"
@@ -19,6 +20,11 @@ class Annealing {
 
   // Starts with a route: targets in order, and what the ways to each of them and to the end cost.
   void start(const std::vector<int>& order, const std::vector<double>& links);
+
+  // Goes on with a child of the route and another one: in a region at random, of a tenth to a half of all targets, it
+  // makes for what the other one makes for. The best route up to now is the child.
+  // REQUIRES: start() came before, and no step().
+  void recombine(const std::vector<int>& other);
 
   // Whether a route of this prize leaves so much out that it matters more what to visit than in which order. Then steps
   // also move budget between regions, and begin hotter.
@@ -65,6 +71,7 @@ class Annealing {
   void take_string(int first, int length);
   void move_region(int seed);
   void put_back_removed();
+  void put_in_random_order(std::vector<int>& targets);
   Turn turn_of(int target, int other, bool forward) const;
   void turn(const Turn& turn);
   void turn_near(int target);
@@ -84,10 +91,12 @@ class Annealing {
   Rng rng_;
   Style style_;
   Route route_;
-  double unit_;               // the mean prize: temperatures are in it
+  double unit_;  // the mean prize: temperatures are in it
+  bool equal_prizes_;
   double price_;              // of a unit of cost
   std::vector<int> removed_;  // taken out, or near what was
   std::vector<int> grown_;    // a region, from its seed on
+  std::vector<std::pair<double, int>> keyed_;
   std::vector<int> queue_;
   std::vector<int> loose_;  // targets whose way on may cost less than is known
   NearestFirst search_;

@@ -25,9 +25,13 @@ constexpr double kRootWork = 1e7;           // without a deadline, of the linear
 constexpr double kBranchWork = 2e6;         // likewise, of branching once the search is over
 constexpr double kStepS = 5e-6;             // a step takes about as long
 constexpr double kLongTime = 4;             // in searches of so many steps: then branching has as much
-constexpr int kShortRuns = 8;               // where the choice matters, before a long one from the best of them
-constexpr double kShortShare = 0.6;         // of the schedule, for all short ones
-constexpr int kStepsPerLook = 16;           // at the clock; a step takes some microseconds
+// Where the choice matters:
+constexpr int kPopulation = 8;
+constexpr double kFirstShare = 0.4;  // of the schedule, for the first population
+constexpr int kChildren = 64;
+constexpr double kLastShare = 0.1;  // of the schedule, for the last run from the best
+constexpr double kWarm = 0.6;       // of the way from the first temperature to the last: where children begin
+constexpr int kStepsPerLook = 16;   // at the clock; a step takes some microseconds
 
 Deadline share_of(Deadline deadline, double share) {
   if (!deadline) return std::nullopt;
@@ -115,13 +119,19 @@ struct Anneal {
   double bound;
   std::function<void(int visits)> tell;
 
-  // One run from a route, from one share of the schedule to another. steps: taken by the chain up to now.
-  Stops run(const Stops& start, std::uint64_t seed, double first, double last, std::int64_t& steps) const {
-    Annealing annealing(targets, task.limit(), seed);
-    annealing.start(start.order, start.links);
-    for (double done = schedule.done(steps); done < last && !is_met(bound, annealing.best_prize());
+  // A part of the schedule, and how far annealing is where it begins.
+  struct Part {
+    double first;
+    double last;
+    double progress = 0;
+  };
+
+  // One run. steps: taken by the chain up to now.
+  Stops run(Annealing& annealing, const Part& part, std::int64_t& steps) const {
+    for (double done = schedule.done(steps); done < part.last && !is_met(bound, annealing.best_prize());
          done = schedule.done(steps)) {
-      const double progress = std::clamp((done - first) / (last - first), 0.0, 1.0);
+      const double share = std::clamp((done - part.first) / (part.last - part.first), 0.0, 1.0);
+      const double progress = part.progress + (1 - part.progress) * share;
       const int count = schedule.steps_to_look(steps);
       for (int i = 0; i < count && !is_met(bound, annealing.best_prize()); ++i) annealing.step(progress);
       steps += count;
@@ -131,18 +141,49 @@ struct Anneal {
     return {order, annealing.best_links(), annealing.best_prize()};
   }
 
-  // Where the choice matters, several short runs, and one from the best of them; else one.
+  Annealing begin(const Stops& start, std::uint64_t seed) const {
+    Annealing annealing(targets, task.limit(), seed);
+    annealing.start(start.order, start.links);
+    return annealing;
+  }
+
+  // Where the choice matters, a population; else one run.
   Stops chain(const Stops& start, std::uint64_t seed) const {
     std::int64_t steps = 0;
-    if (!Annealing::is_selective(targets, start.prize)) return run(start, derive_seed(seed, 0), 0, 1, steps);
-    Stops best = start;
-    for (int i = 0; i < kShortRuns; ++i) {
-      const double first = kShortShare * i / kShortRuns;
-      Stops found = run(start, derive_seed(seed, 1, static_cast<std::uint64_t>(i)), first,
-                        first + kShortShare / kShortRuns, steps);
-      if (found.prize > best.prize) best = std::move(found);
+    Annealing annealing = begin(start, derive_seed(seed, 0));
+    if (!Annealing::is_selective(targets, start.prize)) return run(annealing, {.first = 0, .last = 1}, steps);
+    const Stops best = best_of_population(start, seed, steps);
+    annealing.start(best.order, best.links);
+    return run(annealing, {.first = 1 - kLastShare, .last = 1, .progress = kWarm}, steps);
+  }
+
+  // Short runs, then children of any two: each takes the place of the worst route, if it is better and new.
+  Stops best_of_population(const Stops& start, std::uint64_t seed, std::int64_t& steps) const {
+    std::vector<Stops> routes(kPopulation, start);
+    for (int i = 0; i < kPopulation && schedule.done(steps) < kFirstShare; ++i) {
+      Annealing annealing = begin(start, derive_seed(seed, 1, static_cast<std::uint64_t>(i)));
+      const double first = kFirstShare * i / kPopulation;
+      routes[i] = run(annealing, {.first = first, .last = first + kFirstShare / kPopulation}, steps);
     }
-    return run(best, derive_seed(seed, 0), kShortShare, 1, steps);
+    const auto by_prize = [](const Stops& a, const Stops& b) { return a.prize < b.prize; };
+    Rng rng(derive_seed(seed, 2));
+    constexpr double kShare = (1 - kFirstShare - kLastShare) / kChildren;
+    for (int i = 0; i < kChildren; ++i) {
+      const double first = kFirstShare + kShare * i;
+      if (schedule.done(steps) >= first + kShare) continue;
+      const auto one = rng.below(kPopulation);
+      const auto other = (one + 1 + rng.below(kPopulation - 1)) % kPopulation;
+      Annealing annealing = begin(routes[one], derive_seed(seed, 3, static_cast<std::uint64_t>(i)));
+      annealing.recombine(routes[other].order);
+      Stops child = run(annealing, {.first = first, .last = first + kShare, .progress = kWarm}, steps);
+      const auto worst = std::min_element(routes.begin(), routes.end(), by_prize);
+      const bool is_new = std::none_of(routes.begin(), routes.end(), [&](const Stops& route) {
+        return route.order == child.order ||
+               std::equal(route.order.rbegin(), route.order.rend(), child.order.begin(), child.order.end());
+      });
+      if (is_new && child.prize > worst->prize) *worst = std::move(child);
+    }
+    return *std::max_element(routes.begin(), routes.end(), by_prize);
   }
 };
 
