@@ -191,7 +191,7 @@ struct Anneal {
 
 std::int64_t default_iterations(int targets) {
   const auto count = static_cast<std::int64_t>(targets);
-  return std::clamp<std::int64_t>(3 * count * count, 10'000, std::max<std::int64_t>(600'000, 100 * count));
+  return std::clamp<std::int64_t>(3 * count * count, 10'000, std::max<std::int64_t>(550'000, 100 * count));
 }
 
 Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
