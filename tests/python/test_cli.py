@@ -28,6 +28,7 @@ def test_help_and_version(run):
         ["--help"],
         ["evaluate", "--help"],
         ["maps", "show", "--help"],
+        ["maps", "convert", "--help"],
         ["train", "--help"],
         ["inspect", "--help"],
     ):
@@ -124,6 +125,23 @@ def test_maps_info_and_show(run, tmp_path):
     assert process.stdout.splitlines()[1:] == ["0 1 2 # .", ". # # # .", ". # . . .", ". # . . .", ". . . . ."]
     assert (tmp_path / "a.svg").read_text().count("<circle") == 26
     assert run("graphdrl", "maps", "show", "paper:a").stdout == "paper:a: 19 valid nodes\n" + MAP_A
+
+
+def test_maps_convert_keeps_the_map(run, tmp_path):
+    """A grid through every format that holds it, and a list of edges as networkx writes it."""
+    counts = {"map": "a", "nodes": 25, "edges": 40, "directed": False, "weighted": False, "valid_nodes": 19}
+    source = "paper:a"
+    for ending in (".map", ".txt", ".json"):
+        out = tmp_path / ("a" + ending)
+        assert run("graphdrl", "maps", "convert", source, "--out", out).stdout == f"Wrote {out}\n"
+        assert json.loads(run("graphdrl", "maps", "info", out, "--json").stdout).items() >= counts.items()
+        source = out
+    assert (tmp_path / "a.txt").read_text() == MAP_A
+    (tmp_path / "edges").write_text("a b {'weight': 2.5}\nb c {}\n")
+    run("graphdrl", "maps", "convert", tmp_path / "edges", "--out", tmp_path / "edges.json")
+    graph = json.loads((tmp_path / "edges.json").read_text())
+    assert [node["id"] for node in graph["nodes"]] == ["a", "b", "c"]
+    assert [link["weight"] for link in graph["links"]] == [2.5, 1]
 
 
 def write_safetensors_metadata(path, metadata):
@@ -226,6 +244,9 @@ def bad_inputs(tmp_path, policy):
         (["maps", "show", "paper:a", "--walk", "0,b"], "--walk"),
         (["maps", "show", "paper:a", "--svg", tmp_path / "nowhere" / "a.svg"], "cannot write the file"),
         (["maps", "show", "paper:z"], "no such map"),
+        (["maps", "convert", "paper:a", "--out", tmp_path / "a.gr"], "expected .json, .map, .txt"),
+        (["maps", "convert", tmp_path / "graph.json", "--out", tmp_path / "a.map"], "this format holds grids only"),
+        (["maps", "convert", "paper", "--out", tmp_path / "a.map"], "more than one map"),
         (["maps", "show", "paper:a", "--walk", ""], "--walk"),
         (["maps", "show", "paper:a", "--svg", "/dev/null"], "something else stands there"),
         (

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "graphdrl/graph/components.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/map_source.h"
 #include "graphdrl/io/node_link.h"
 #include "graphdrl/report/map_drawing.h"
 
@@ -24,6 +26,11 @@ struct MapsOptions {
   std::vector<NodeId> walk;
   std::string svg;
   bool json = false;
+};
+
+struct ConvertOptions {
+  std::string map;
+  std::string out;
 };
 
 struct GenerateOptions {
@@ -84,6 +91,47 @@ void show_map(const MapsOptions& options) {
   print_text(text);
 }
 
+// The map in the format that the file's ending names.
+std::string format_map(const AnyMap& map, const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  const auto formats = map_formats();
+  const auto can_write = [](const MapFormat& one) { return one.write_grid != nullptr || one.write_graph != nullptr; };
+  const auto format = std::find_if(formats.begin(), formats.end(),
+                                   [&](const MapFormat& one) { return one.ending == ending && can_write(one); });
+  if (format == formats.end()) {
+    std::string endings;
+    for (const MapFormat& one : formats) {
+      if (can_write(one)) endings += fmt::format("{}{}", endings.empty() ? "" : ", ", one.ending);
+    }
+    throw Error({.what = "no format with this ending can be written", .expected = endings, .where = file});
+  }
+  const auto* const grid = std::get_if<GridMap>(&map);
+  if (grid != nullptr && format->write_grid != nullptr) return format->write_grid(*grid);
+  if (format->write_graph == nullptr) {
+    throw Error({.what = "this format holds grids only", .expected = "another ending", .where = file});
+  }
+  if (grid == nullptr) return format->write_graph(std::get<GraphMap>(map));
+  return format->write_graph({.graph = Graph::grid(grid->rows, grid->cols), .blocked = grid->blocked, .labels = {}});
+}
+
+void convert_map(const ConvertOptions& options) {
+  const NamedMap named = load_map(options.map);
+  write_file(options.out, format_map(named.map, options.out));
+  const auto* const graph = std::get_if<GraphMap>(&named.map);
+  const bool given = graph != nullptr && (graph->task.budget || graph->task.start != kNoNode);
+  print_text(fmt::format("Wrote {}{}\n", options.out, given ? ", without the budget and the ends of the file" : ""));
+}
+
+std::string describe_formats() {
+  std::string text = "Maps are read in any of these formats, known by their content:\n";
+  for (const MapFormat& format : map_formats()) {
+    const bool written = format.write_grid != nullptr || format.write_graph != nullptr;
+    text += fmt::format("  {:10} {:6} {}\n", format.name, written ? format.ending : "", format.purpose);
+  }
+  text += "With an ending: can be written.\n";
+  return text;
+}
+
 const std::map<std::string, Split> kSplits = {
     {"train", Split::kTrain}, {"validation", Split::kValidation}, {"test", Split::kTest}};
 
@@ -127,7 +175,7 @@ std::string describe_families() {
 }  // namespace
 
 void add_maps_command(CLI::App& app) {
-  CLI::App* const maps = app.add_subcommand("maps", "Look at maps, and make random ones");
+  CLI::App* const maps = app.add_subcommand("maps", "Look at maps, convert them, and make random ones");
   maps->require_subcommand(1);
   const auto options = std::make_shared<MapsOptions>();
   const auto add = [&](const std::string& name, const std::string& description) {
@@ -148,6 +196,16 @@ void add_maps_command(CLI::App& app) {
       ->type_name("IDS");
   show->add_option("--svg", options->svg, "Also write the picture to this file")->type_name("FILE");
   show->callback([options] { show_map(*options); });
+
+  CLI::App* const convert = maps->add_subcommand("convert", "Write a map in another format");
+  const auto converting = std::make_shared<ConvertOptions>();
+  convert->add_option("map", converting->map, "paper:a to paper:j, or a file")->required()->type_name("MAP");
+  convert->add_option("--out", converting->out, "The file; its ending names the format")
+      ->required()
+      ->check(not_empty())
+      ->type_name("FILE");
+  convert->footer(describe_formats());
+  convert->callback([converting] { convert_map(*converting); });
 
   CLI::App* const generate = maps->add_subcommand("generate", "Make random worlds, each family with its own ranges");
   const auto making = std::make_shared<GenerateOptions>();

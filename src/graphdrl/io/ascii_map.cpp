@@ -7,19 +7,14 @@
 #include <vector>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
 
 std::vector<std::string_view> split_rows(std::string_view text) {
   std::vector<std::string_view> rows;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    std::string_view row = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (row.ends_with('\r')) row.remove_suffix(1);
-    rows.push_back(row);
-  }
+  for (Lines lines(text); lines.next();) rows.push_back(lines.line());
   while (!rows.empty() && rows.back().empty()) rows.pop_back();
   return rows;
 }

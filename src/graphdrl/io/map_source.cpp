@@ -6,7 +6,6 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/tsplib.h"
 
 namespace graphdrl {
 namespace {
@@ -20,12 +19,7 @@ NamedMap paper_map(char letter) {
 
 NamedMap file_map(const std::filesystem::path& path) {
   const std::string text = read_file(path);
-  const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin != std::string::npos && text[begin] == '{') {
-    return {path.stem().string(), parse_node_link(text, path.string())};
-  }
-  if (is_tsplib(text)) return {path.stem().string(), parse_tsplib(text, path.string())};
-  return {path.stem().string(), parse_ascii_map(text, path.string())};
+  return {path.stem().string(), format_of(text).read(text, path.string())};
 }
 
 std::vector<NamedMap> folder_maps(const std::filesystem::path& folder) {

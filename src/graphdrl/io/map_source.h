@@ -3,23 +3,20 @@
 
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "graphdrl/graph/grid_map.h"
-#include "graphdrl/io/node_link.h"
+#include "graphdrl/io/map_formats.h"
 
 namespace graphdrl {
 
 struct NamedMap {
   std::string name;  // what the user gave; a file's stem
-  std::variant<GridMap, GraphMap> map;
+  AnyMap map;
 };
 
 // `paper:a` … `paper:j`, `paper` (all ten), a file, or a folder of files (read in order of name; hidden ones are
-// skipped). A file that begins with '{' is a graph in node-link form, one that begins
-// with a keyword of TSPLIB a file of OPLib, any other an ASCII map. Throws Error where
-// nothing can be read under that name. A file called `paper` is reachable as `./paper`.
+// skipped), in any format of map_formats(). Throws Error where nothing can be read under that name. A file called
+// `paper` is reachable as `./paper`.
 std::vector<NamedMap> load_maps(const std::string& source);
 
 // As load_maps, for a source that must hold exactly one map.

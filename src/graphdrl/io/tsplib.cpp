@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
@@ -138,14 +139,10 @@ class TsplibReader {
     return line.substr(0, line.find_last_not_of(kSpace) + 1);
   }
   double to_number(std::string_view found, std::string_view where) const {
-    double value = 0;
-    if (found.starts_with('+')) found.remove_prefix(1);
-    const auto [end, error] = std::from_chars(found.data(), found.data() + found.size(), value);
     if (found.empty()) fail_here(fmt::format("the file ends within {}", where));
-    if (error != std::errc() || end != found.data() + found.size() || !std::isfinite(value)) {
-      fail_here(fmt::format("not a number in {}", where), in_quotes(found));
-    }
-    return value + 0.0;  // turns -0 into 0
+    const std::optional<double> value = parse_number(found);
+    if (!value) fail_here(fmt::format("not a number in {}", where), in_quotes(found));
+    return *value;
   }
   double number(std::string_view where) {
     const std::string_view found = word();

@@ -1,0 +1,188 @@
+#include "graphdrl/io/edge_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/node_ids.h"
+#include "graphdrl/io/text.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::array<std::string_view, 4> kSourceNames = {"source", "from", "src", "u"};
+constexpr std::array<std::string_view, 4> kTargetNames = {"target", "to", "dst", "v"};
+constexpr std::array<std::string_view, 4> kCostNames = {"weight", "cost", "length", "distance"};
+constexpr int kNone = -1;
+
+bool is_comment(std::string_view line) {
+  line = trimmed(line);
+  return line.empty() || line.front() == '#' || line.front() == '%';
+}
+
+char separator_of(std::string_view line) {
+  for (const char separator : {',', ';', '\t'}) {
+    // A dictionary of networkx has commas of its own.
+    if (line.substr(0, line.find('{')).find(separator) != std::string_view::npos) return separator;
+  }
+  return ' ';
+}
+
+// The fields of a line. A quote that does not end gives no fields.
+std::vector<std::string> split(std::string_view line, char separator) {
+  std::vector<std::string> fields;
+  for (;;) {
+    line = trimmed(line);
+    if (separator == ' ' && line.empty()) return fields;
+    if (line.starts_with('{')) {
+      fields.emplace_back(line);
+      return fields;
+    }
+    std::string field;
+    if (line.starts_with('"')) {
+      std::size_t at = 1;
+      for (;; ++at) {
+        if (at >= line.size()) return {};
+        if (line[at] != '"') {
+          field += line[at];
+        } else if (at + 1 < line.size() && line[at + 1] == '"') {
+          field += line[at++];
+        } else {
+          break;
+        }
+      }
+      line = trimmed(line.substr(at + 1));
+      if (!line.empty() && separator != ' ' && line.front() != separator) return {};
+    } else {
+      const std::size_t end = separator == ' ' ? line.find_first_of(" \t") : line.find(separator);
+      field = trimmed(line.substr(0, end));
+      line.remove_prefix(std::min(end, line.size()));
+    }
+    fields.push_back(std::move(field));
+    if (separator == ' ') continue;
+    if (line.empty()) return fields;
+    line.remove_prefix(1);
+  }
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
+  return result;
+}
+
+// The first field of one of these names.
+int column_of(const std::vector<std::string>& fields, std::span<const std::string_view> names) {
+  for (const std::string_view name : names) {
+    const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& one) { return lower(one) == name; });
+    if (field != fields.end()) return static_cast<int>(field - fields.begin());
+  }
+  return kNone;
+}
+
+// What a dictionary of Python has under one of the names of costs; 1 where it has none, and empty where that is no
+// number.
+std::optional<double> cost_in_dictionary(std::string_view text) {
+  if (!text.ends_with('}')) return std::nullopt;
+  for (const std::string_view name : kCostNames) {
+    for (const char quote : {'\'', '"'}) {
+      const std::string key = fmt::format("{}{}{}:", quote, name, quote);
+      const std::size_t at = text.find(key);
+      if (at == std::string_view::npos) continue;
+      const std::string_view rest = text.substr(at + key.size());
+      return parse_number(trimmed(rest.substr(0, rest.find_first_of(",}"))));
+    }
+  }
+  return 1;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& source) : lines_(text), source_(source) {}
+
+  GraphMap read() {
+    bool first = true;
+    while (lines_.next()) {
+      if (is_comment(lines_.line())) continue;
+      if (first) separator_ = separator_of(lines_.line());
+      const std::vector<std::string> fields = split(lines_.line(), separator_);
+      if (!first || !read_header(fields)) read_edge(fields);
+      first = false;
+    }
+    if (edges_.empty()) throw Error({.what = "no edges", .where = source_});
+    GraphMap map{.graph = Graph::from_edges(ids_.count(), edges_), .blocked = {}, .labels = {}};
+    map.blocked.resize(ids_.count());
+    map.labels = ids_.take_labels();
+    return map;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what, const std::string& expected, std::string_view got) const {
+    throw Error({.what = what,
+                 .expected = expected,
+                 .got = in_quotes(got),
+                 .where = fmt::format("{}:{}", source_, lines_.number())});
+  }
+
+  // Whether these are the names of columns.
+  bool read_header(const std::vector<std::string>& fields) {
+    const int from = column_of(fields, kSourceNames);
+    const int to = column_of(fields, kTargetNames);
+    if (from == kNone || to == kNone) return false;
+    from_ = from;
+    to_ = to;
+    cost_ = column_of(fields, kCostNames);
+    return true;
+  }
+
+  void read_edge(const std::vector<std::string>& fields) {
+    const auto count = static_cast<int>(fields.size());
+    if (count <= std::max(from_, to_) || fields[from_].empty() || fields[to_].empty()) {
+      fail("not an edge", "two nodes, and a cost where there is one", lines_.line());
+    }
+    const NodeId from = node(fields[from_]);
+    const NodeId to = node(fields[to_]);
+    double cost = 1;
+    if (cost_ != kNone && cost_ < count) {
+      const std::string& field = fields[cost_];
+      const std::optional<double> number = field.starts_with('{') ? cost_in_dictionary(field) : parse_number(field);
+      if (!number || *number < 0) fail("bad cost", "a number from 0 up", field);
+      cost = *number;
+    }
+    edges_.push_back({from, to, cost});
+  }
+
+  NodeId node(const std::string& id) {
+    if (ids_.add(id)) return ids_.count() - 1;
+    return ids_.find(id);
+  }
+
+  Lines lines_;
+  const std::string& source_;
+  char separator_ = ' ';
+  int from_ = 0;
+  int to_ = 1;
+  int cost_ = 2;
+  NodeIds ids_;
+  std::vector<Edge> edges_;
+};
+
+}  // namespace
+
+bool is_edge_list(std::string_view text) {
+  Lines lines(text);
+  while (lines.next()) {
+    if (!is_comment(lines.line())) return split(lines.line(), separator_of(lines.line())).size() >= 2;
+  }
+  return false;
+}
+
+GraphMap parse_edge_list(std::string_view text, const std::string& source) {
+  return Reader(text, source).read();
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,23 @@
+// Graphs as lists of edges, one a line: what networkx, igraph, SNAP and spreadsheets write.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "graphdrl/io/node_link.h"
+
+namespace graphdrl {
+
+// Whether the first line that is no comment has two fields or more.
+bool is_edge_list(std::string_view text);
+
+// Two nodes a line, and a cost, 1 unless given. Fields stand between commas, semicolons or tabs, whichever the first
+// line has, in "quotes" where they contain one, or else between spaces. Lines that begin with '#' or '%' are comments.
+// A first line that names a column `source`, `from`, `src` or `u` and one `target`, `to`, `dst` or `v` is a header:
+// columns may stand in any order, and `weight`, `cost`, `length` or `distance` is the cost. Without a header, the cost
+// is the third field; it may be a Python dictionary, as networkx writes it: {'weight': 2.5}. Other columns are skipped.
+// Edges lead both ways. Node ids are any texts; nodes are numbered as they come. Throws Error, naming `source` and the
+// line, on anything else.
+GraphMap parse_edge_list(std::string_view text, const std::string& source);
+
+}  // namespace graphdrl

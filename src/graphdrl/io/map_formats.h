@@ -1,0 +1,33 @@
+// The file formats of maps.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "graphdrl/graph/grid_map.h"
+#include "graphdrl/io/node_link.h"
+
+namespace graphdrl {
+
+// A map as its file holds it.
+using AnyMap = std::variant<GridMap, GraphMap>;
+
+struct MapFormat {
+  std::string_view name;
+  std::string_view ending;   // of files that it writes: ".txt"
+  std::string_view purpose;  // one line
+  bool (*recognise)(std::string_view text);
+  AnyMap (*read)(std::string_view text, const std::string& source);  // throws Error
+  std::string (*write_grid)(const GridMap& map) = nullptr;           // null where it holds no grids
+  std::string (*write_graph)(const GraphMap& map) = nullptr;         // null where it does not hold all of a graph
+};
+
+// In the order in which they are tried.
+std::span<const MapFormat> map_formats();
+
+// The first format that knows a text as its own; the last one, ASCII maps, takes any.
+const MapFormat& format_of(std::string_view text);
+
+}  // namespace graphdrl

@@ -1,0 +1,143 @@
+#include "graphdrl/io/map_formats.h"
+
+#include <gmock/gmock.h>
+
+#include "graphdrl/io/moving_ai.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+AnyMap read(const std::string& text) {
+  return format_of(text).read(text, "file");
+}
+
+GraphMap read_graph(const std::string& text) {
+  return std::get<GraphMap>(read(text));
+}
+
+GridMap read_grid(const std::string& text) {
+  return std::get<GridMap>(read(text));
+}
+
+TEST(MapFormats, AreKnownByTheirContent) {
+  const std::vector<std::pair<std::string, std::string>> texts = {
+      {"ascii", "...\n.#.\n"},
+      {"ascii", "##\n#.\n"},
+      {"ascii", ""},
+      {"moving-ai", "type octile\nheight 1\nwidth 1\nmap\n.\n"},
+      {"node-link", "\n {\"nodes\": []}"},
+      {"tsplib", "NAME : a\nTYPE : OP\n"},
+      {"dimacs", "c a comment\n\np edge 2 1\ne 1 2\n"},
+      {"dimacs", "p sp 2 1\na 1 2 7\n"},
+      {"edge-list", "# comment\n0 1\n"},
+      {"edge-list", "a,b\n"},
+      {"edge-list", "\"a b\";c;1\n"},
+  };
+  for (const auto& [name, text] : texts) EXPECT_EQ(format_of(text).name, name) << text;
+}
+
+TEST(MovingAi, IsReadAndWritten) {
+  const GridMap map = read_grid("type octile\r\nheight 2\r\nwidth 7\r\nmap\r\n.GS@OTW\r\n@@@@@@.\r\n\r\n");
+  EXPECT_EQ(map.rows, 2);
+  EXPECT_EQ(map.cols, 7);
+  EXPECT_THAT(map.blocked, ElementsAre(false, false, false, true, true, true, true,  //
+                                       true, true, true, true, true, true, false));
+  const std::string text = format_moving_ai(map);
+  EXPECT_EQ(text, "type octile\nheight 2\nwidth 7\nmap\n...@@@@\n@@@@@@.\n");
+  EXPECT_EQ(read_grid(text).blocked, map.blocked);
+}
+
+TEST(MovingAi, RefusesWhatItsHeaderDoesNotSay) {
+  const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
+  EXPECT_THAT(complaint("type tile\n"), HasSubstr("file:1: a map of another type: expected octile, got 'tile'"));
+  EXPECT_THAT(complaint("type octile\nheight 2\nheight 2\n"), HasSubstr("file:3: given twice"));
+  EXPECT_THAT(complaint("type octile\nheight -2\n"), HasSubstr("bad height"));
+  EXPECT_THAT(complaint("type octile\nheight 2\ndepth 2\n"), HasSubstr("strange line in the header"));
+  EXPECT_THAT(complaint("type octile\nheight 2\n"), HasSubstr("the file ends within the header"));
+  EXPECT_THAT(complaint("type octile\nheight 2\nmap\n"), HasSubstr("no width in the header"));
+  EXPECT_THAT(complaint("type octile\nheight 2000000000\nwidth 2000000000\nmap\n"), HasSubstr("too many cells"));
+  EXPECT_THAT(complaint("type octile\nheight 20000\nwidth 20000\nmap\n"), HasSubstr("expected 20000 rows, got 0"));
+  const std::string header = "type octile\nheight 1\nwidth 2\nmap\n";
+  EXPECT_THAT(complaint(header + "...\n"), HasSubstr("file:5: a row of another length: expected 2 cells"));
+  EXPECT_THAT(complaint(header + ".x\n"), HasSubstr("file:5:2: strange character"));
+  EXPECT_THAT(complaint(header + "..\n..\n"), HasSubstr("file:6: more rows"));
+  EXPECT_THAT(complaint(header + "@@\n"), HasSubstr("no free cell"));
+}
+
+TEST(Dimacs, HoldsUndirectedGraphs) {
+  for (const char* const problem : {"p edge 4 2", "p col 4 2", "p edge 4 4", "p edge 4 1"}) {
+    const GraphMap map = read_graph(std::string("c named so\n") + problem + "\ne 1 3\ne 3 4\n");
+    EXPECT_THAT(map.labels, ElementsAre("1", "2", "3", "4"));
+    EXPECT_FALSE(map.graph.directed());
+    EXPECT_FALSE(map.graph.weighted());
+    EXPECT_EQ(map.graph.edge_count(), 2);
+    EXPECT_THAT(map.graph.neighbours(2), ElementsAre(0, 3));
+  }
+}
+
+TEST(Dimacs, HoldsDirectedGraphsWithCosts) {
+  const GraphMap map = read_graph("p sp 3 2\na 1 2 2.5\na 3 1 0\n");
+  EXPECT_TRUE(map.graph.directed());
+  EXPECT_THAT(map.graph.neighbours(0), ElementsAre(1));
+  EXPECT_EQ(map.graph.cost(0, 0), 2.5);
+  EXPECT_TRUE(map.graph.neighbours(1).empty());
+  EXPECT_EQ(map.graph.cost(2, 0), 0);
+}
+
+TEST(Dimacs, RefusesWhatItsProblemDoesNotSay) {
+  const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
+  EXPECT_THAT(complaint("c igraph\np max 3 2\n"), HasSubstr("file:2: bad problem: expected p edge, p col or p sp"));
+  EXPECT_THAT(complaint("p edge 0 0\n"), HasSubstr("bad number: expected a number of nodes from 1 to"));
+  EXPECT_THAT(complaint("p edge 2000000000 0\n"), HasSubstr("for a file of this size"));
+  EXPECT_THAT(complaint("p edge 3 1\np edge 3 1\n"), HasSubstr("file:2: a second problem"));
+  EXPECT_THAT(complaint("p edge 3 1\na 1 2 3\n"), HasSubstr("expected an edge `e U V`, got 'a 1 2 3'"));
+  EXPECT_THAT(complaint("p edge 3 1\ne 1 4\n"), HasSubstr("expected nodes from 1 to 3"));
+  EXPECT_THAT(complaint("p edge 3 1\ne 1 2 3 4 5 6\n"), HasSubstr("strange line"));
+  EXPECT_THAT(complaint("p sp 3 1\na 1 2 -1\n"), HasSubstr("bad cost: expected a number from 0 up"));
+  EXPECT_THAT(complaint("p sp 3 2\na 1 2 1\n"), HasSubstr("another number of edges than the file says"));
+  EXPECT_THAT(complaint("p edge 3 7\ne 1 2\n"), HasSubstr("expected 7, got 1"));
+}
+
+TEST(EdgeList, TakesWhatOthersWrite) {
+  // igraph and SNAP.
+  const GraphMap plain = read_graph("# Nodes: 3 Edges: 2\n0\t1\n1\t2\n");
+  EXPECT_TRUE(plain.labels.empty());
+  EXPECT_EQ(plain.graph.node_count(), 3);
+  EXPECT_EQ(plain.graph.edge_count(), 2);
+  EXPECT_FALSE(plain.graph.directed());
+  // networkx, with and without data.
+  const GraphMap data = read_graph("a b {}\nb c {'colour': 'red, dark', 'weight': 2.5}\n");
+  EXPECT_THAT(data.labels, ElementsAre("a", "b", "c"));
+  EXPECT_EQ(data.graph.cost(1, 0), 1);
+  EXPECT_EQ(data.graph.cost(1, 1), 2.5);
+  // A spreadsheet.
+  const GraphMap table = read_graph("Distance;To;From;note\n3;\"Saint \"\"M\"\"; north\";Ulm;x\n0.5;Ulm;Bonn;\n");
+  EXPECT_THAT(table.labels, ElementsAre("Ulm", "Saint \"M\"; north", "Bonn"));
+  EXPECT_EQ(table.graph.cost(0, 0), 3);
+  EXPECT_EQ(table.graph.cost(2, 0), 0.5);
+  // KONECT: a loop, an edge twice and the other way round.
+  const GraphMap konect = read_graph("% sym weighted\n7 7 1\n7 8 5\n8 7 4\n");
+  EXPECT_THAT(konect.labels, ElementsAre("7", "8"));
+  EXPECT_EQ(konect.graph.edge_count(), 1);
+  EXPECT_EQ(konect.graph.cost(0, 0), 4);
+}
+
+TEST(EdgeList, RefusesWhatIsNoEdge) {
+  const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
+  EXPECT_THAT(complaint("1 2\n3\n"), HasSubstr("file:2: not an edge"));
+  EXPECT_THAT(complaint("1,2\n,3\n"), HasSubstr("file:2: not an edge"));
+  EXPECT_THAT(complaint("1,2\n\"1,3\n"), HasSubstr("file:2: not an edge"));
+  EXPECT_THAT(complaint("1,2\n\"1\"x,3\n"), HasSubstr("file:2: not an edge"));
+  EXPECT_THAT(complaint("1 2 -4\n"), HasSubstr("file:1: bad cost: expected a number from 0 up, got '-4'"));
+  EXPECT_THAT(complaint("1 2 nan\n"), HasSubstr("bad cost"));
+  EXPECT_THAT(complaint("1 2 {'weight': 'x'}\n"), HasSubstr("bad cost"));
+  EXPECT_THAT(complaint("1 2 {'weight': 1\n"), HasSubstr("bad cost"));
+  EXPECT_THAT(complaint("from,to\n"), HasSubstr("no edges"));
+}
+
+}  // namespace
+}  // namespace graphdrl
