@@ -30,11 +30,13 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"ascii", ""},
       {"moving-ai", "type octile\nheight 1\nwidth 1\nmap\n.\n"},
       {"node-link", "\n {\"nodes\": []}"},
+      {"graphml", "<?xml version='1.0'?>\n<!-- a -->\n<graphml/>"},
       {"tsplib", "NAME : a\nTYPE : OP\n"},
       {"dimacs", "c a comment\n\np edge 2 1\ne 1 2\n"},
       {"dimacs", "p sp 2 1\na 1 2 7\n"},
       {"edge-list", "# comment\n0 1\n"},
       {"edge-list", "a,b\n"},
+      {"ascii", "a\x01 b\n"},
       {"edge-list", "\"a b\";c;1\n"},
   };
   for (const auto& [name, text] : texts) EXPECT_EQ(format_of(text).name, name) << text;
@@ -137,6 +139,89 @@ TEST(EdgeList, RefusesWhatIsNoEdge) {
   EXPECT_THAT(complaint("1 2 {'weight': 'x'}\n"), HasSubstr("bad cost"));
   EXPECT_THAT(complaint("1 2 {'weight': 1\n"), HasSubstr("bad cost"));
   EXPECT_THAT(complaint("from,to\n"), HasSubstr("no edges"));
+}
+
+constexpr const char* kGraphMl = R"(<?xml version="1.0" encoding="UTF-8"?>
+<graphml xmlns="http://graphml.graphdrawing.org/xmlns">
+  <key id="d0" for="node" attr.name="label" attr.type="string"/>
+  <key id="d1" for="node" attr.name="score" attr.type="double"><default>2</default></key>
+  <key id="d2" for="edge" attr.name="distance" attr.type="double"/>
+  <key id="d3" for="all" attr.name="colour" attr.type="string"/>
+  <graph edgedefault="undirected">
+    <node id="n0"><data key="d0">dock &amp; yard</data><data key="d1">5</data></node>
+    <node id="n1"><data key="d0">gate</data><data key="d3">red</data></node>
+    <node id="n2"><data key="d0">hall</data></node>
+    <edge source="n0" target="n1"><data key="d2">2.5</data></edge>
+    <edge source="n1" target="n2"/>
+  </graph>
+</graphml>
+)";
+
+TEST(GraphMl, TakesWhatOthersWrite) {
+  const GraphMap map = read_graph(kGraphMl);
+  EXPECT_THAT(map.labels, ElementsAre("dock & yard", "gate", "hall"));
+  EXPECT_THAT(map.prizes, ElementsAre(5, 2, 2));
+  EXPECT_TRUE(map.places.empty());
+  EXPECT_FALSE(map.graph.directed());
+  EXPECT_EQ(map.graph.cost(1, 0), 2.5);
+  EXPECT_EQ(map.graph.cost(1, 1), 1);
+}
+
+TEST(GraphMl, MixesEdgesOneWayAndBothWays) {
+  const GraphMap map = read_graph(
+      "<graphml><graph edgedefault='undirected'><node id='a'/><node id='b'/><node id='c'/>"
+      "<edge source='a' target='b'/><edge source='b' target='c' directed='true'/></graph></graphml>");
+  EXPECT_TRUE(map.graph.directed());
+  EXPECT_THAT(map.labels, ElementsAre("a", "b", "c"));
+  EXPECT_THAT(map.graph.neighbours(1), ElementsAre(0, 2));
+  EXPECT_TRUE(map.graph.neighbours(2).empty());
+}
+
+TEST(GraphMl, RefusesWhatIsNoFlatGraph) {
+  const auto complaint = [](const std::string& graph) {
+    return error_of([&] { read("<graphml>\n<key id='w' for='edge' attr.name='weight'/>" + graph + "</graphml>"); });
+  };
+  EXPECT_THAT(complaint("<graph>"), HasSubstr("XML that is not well formed"));
+  EXPECT_THAT(complaint(""), HasSubstr("no graph"));
+  EXPECT_THAT(complaint("<graph><node id='a'/></graph>\n<graph/>"), HasSubstr("file:3: a second graph"));
+  EXPECT_THAT(complaint("<graph/>"), HasSubstr("no free node"));
+  EXPECT_THAT(complaint("<graph><node/></graph>"), HasSubstr("file:2: a node without an id"));
+  EXPECT_THAT(complaint("<graph><node id='a'/>\n<node id='a'/></graph>"), HasSubstr("file:3: an id used twice"));
+  EXPECT_THAT(complaint("<graph><node id='a'><graph/></node></graph>"), HasSubstr("a graph within a node"));
+  EXPECT_THAT(complaint("<graph><node id='a'/><hyperedge/></graph>"), HasSubstr("more than two nodes"));
+  EXPECT_THAT(complaint("<graph><node id='a'/><edge source='a' target='b'/></graph>"),
+              HasSubstr("no such node: expected the id of a node, got 'b'"));
+  EXPECT_THAT(complaint("<graph><node id='a'/><edge source='a' target='a'><data key='w'>-1</data></edge></graph>"),
+              HasSubstr("bad weight: expected a number from 0 up, got '-1'"));
+}
+
+// Every format that graphs are written in keeps all that it is given.
+TEST(MapFormats, KeepGraphs) {
+  for (const EdgeKind kind : {EdgeKind::kUndirected, EdgeKind::kDirected}) {
+    const std::vector<Edge> edges = {{0, 1, 0.1}, {1, 2, 3}, {2, 0, 1e-9}};
+    const GraphMap map{.graph = Graph::from_edges(3, edges, kind),
+                       .blocked = {false, true, false},
+                       .labels = {"<a> & \"b\"", "Süd", "7"},
+                       .prizes = {1, 0.25, 1e6},
+                       .places = {{0.1, -2}, {1e-7, 3}, {4, 5}}};
+    for (const MapFormat& format : map_formats()) {
+      if (format.write_graph == nullptr) continue;
+      const std::string text = format.write_graph(map);
+      EXPECT_EQ(format_of(text).name, format.name);
+      const GraphMap again = read_graph(text);
+      EXPECT_EQ(again.blocked, map.blocked) << text;
+      EXPECT_EQ(again.labels, map.labels) << text;
+      EXPECT_EQ(again.prizes, map.prizes) << text;
+      EXPECT_EQ(again.places, map.places) << text;
+      EXPECT_EQ(again.graph.directed(), map.graph.directed());
+      ASSERT_EQ(again.graph.edges().size(), map.graph.edges().size());
+      for (std::size_t i = 0; i < map.graph.edges().size(); ++i) {
+        EXPECT_EQ(again.graph.edges()[i].a, map.graph.edges()[i].a);
+        EXPECT_EQ(again.graph.edges()[i].b, map.graph.edges()[i].b);
+        EXPECT_EQ(again.graph.edges()[i].cost, map.graph.edges()[i].cost);
+      }
+    }
+  }
 }
 
 }  // namespace

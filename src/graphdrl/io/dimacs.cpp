@@ -16,7 +16,7 @@ namespace {
 constexpr int kMostWords = 4;
 // No file claims more memory than it fills: most of its nodes have edges.
 constexpr std::size_t kSpareNodes = 1000;
-constexpr std::size_t kMostNodes = std::numeric_limits<NodeId>::max();
+constexpr std::size_t kMostNodeIds = std::numeric_limits<NodeId>::max();
 
 // The words of a line, and how many there are: at most one more than a line may have.
 struct Words {
@@ -33,21 +33,21 @@ struct Words {
   int count = 0;
 };
 
-bool is_comment(const Words& words) {
+bool is_dimacs_comment(const Words& words) {
   return words.count == 0 || words[0] == "c";
 }
 
-class Reader {
+class DimacsReader {
  public:
-  Reader(std::string_view text, const std::string& source)
+  DimacsReader(std::string_view text, const std::string& source)
       : lines_(text),
-        most_nodes_(static_cast<double>(std::min(text.size() + kSpareNodes, kMostNodes))),
+        most_nodes_(static_cast<double>(std::min(text.size() + kSpareNodes, kMostNodeIds))),
         source_(source) {}
 
   GraphMap read() {
     while (lines_.next()) {
       const Words words(lines_.line());
-      if (is_comment(words)) continue;
+      if (is_dimacs_comment(words)) continue;
       if (words[0] == "p") {
         read_problem(words);
       } else {
@@ -126,14 +126,14 @@ bool is_dimacs(std::string_view text) {
   Lines lines(text);
   while (lines.next()) {
     const Words words(lines.line());
-    if (is_comment(words)) continue;
+    if (is_dimacs_comment(words)) continue;
     return words[0] == "p" && words.count == 4;
   }
   return false;
 }
 
 GraphMap parse_dimacs(std::string_view text, const std::string& source) {
-  return Reader(text, source).read();
+  return DimacsReader(text, source).read();
 }
 
 }  // namespace graphdrl

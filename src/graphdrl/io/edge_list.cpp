@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/node_ids.h"
+#include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
@@ -15,7 +14,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kSourceNames = {"source", "from", "src", "u"};
 constexpr std::array<std::string_view, 4> kTargetNames = {"target", "to", "dst", "v"};
-constexpr std::array<std::string_view, 4> kCostNames = {"weight", "cost", "length", "distance"};
 constexpr int kNone = -1;
 
 bool is_comment(std::string_view line) {
@@ -68,41 +66,35 @@ std::vector<std::string> split(std::string_view line, char separator) {
   }
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
-  return result;
-}
-
 // The first field of one of these names.
 int column_of(const std::vector<std::string>& fields, std::span<const std::string_view> names) {
   for (const std::string_view name : names) {
-    const auto field = std::find_if(fields.begin(), fields.end(), [&](const auto& one) { return lower(one) == name; });
+    const auto field =
+        std::find_if(fields.begin(), fields.end(), [&](const auto& one) { return same_name(one, name); });
     if (field != fields.end()) return static_cast<int>(field - fields.begin());
   }
   return kNone;
 }
 
-// What a dictionary of Python has under one of the names of costs; 1 where it has none, and empty where that is no
-// number.
-std::optional<double> cost_in_dictionary(std::string_view text) {
-  if (!text.ends_with('}')) return std::nullopt;
-  for (const std::string_view name : kCostNames) {
+// What a dictionary of Python has under one of the names of costs; 1 where it has none.
+std::string_view cost_in_dictionary(std::string_view text) {
+  if (!text.ends_with('}')) return text;
+  for (const std::string_view name : cost_names()) {
     for (const char quote : {'\'', '"'}) {
       const std::string key = fmt::format("{}{}{}:", quote, name, quote);
       const std::size_t at = text.find(key);
       if (at == std::string_view::npos) continue;
       const std::string_view rest = text.substr(at + key.size());
-      return parse_number(trimmed(rest.substr(0, rest.find_first_of(",}"))));
+      return rest.substr(0, rest.find_first_of(",}"));
     }
   }
-  return 1;
+  return "1";
 }
 
-class Reader {
+class EdgeListReader {
  public:
-  Reader(std::string_view text, const std::string& source) : lines_(text), source_(source) {}
+  EdgeListReader(std::string_view text, const std::string& source)
+      : lines_(text), source_(source), builder_(false, [this] { return place(); }) {}
 
   GraphMap read() {
     bool first = true;
@@ -113,20 +105,12 @@ class Reader {
       if (!first || !read_header(fields)) read_edge(fields);
       first = false;
     }
-    if (edges_.empty()) throw Error({.what = "no edges", .where = source_});
-    GraphMap map{.graph = Graph::from_edges(ids_.count(), edges_), .blocked = {}, .labels = {}};
-    map.blocked.resize(ids_.count());
-    map.labels = ids_.take_labels();
-    return map;
+    if (!any_) throw Error({.what = "no edges", .where = source_});
+    return builder_.build();
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what, const std::string& expected, std::string_view got) const {
-    throw Error({.what = what,
-                 .expected = expected,
-                 .got = in_quotes(got),
-                 .where = fmt::format("{}:{}", source_, lines_.number())});
-  }
+  std::string place() const { return fmt::format("{}:{}", source_, lines_.number()); }
 
   // Whether these are the names of columns.
   bool read_header(const std::vector<std::string>& fields) {
@@ -135,30 +119,24 @@ class Reader {
     if (from == kNone || to == kNone) return false;
     from_ = from;
     to_ = to;
-    cost_ = column_of(fields, kCostNames);
+    cost_ = column_of(fields, cost_names());
     return true;
   }
 
   void read_edge(const std::vector<std::string>& fields) {
     const auto count = static_cast<int>(fields.size());
     if (count <= std::max(from_, to_) || fields[from_].empty() || fields[to_].empty()) {
-      fail("not an edge", "two nodes, and a cost where there is one", lines_.line());
+      throw Error({.what = "not an edge",
+                   .expected = "two nodes, and a cost where there is one",
+                   .got = in_quotes(lines_.line()),
+                   .where = place()});
     }
-    const NodeId from = node(fields[from_]);
-    const NodeId to = node(fields[to_]);
-    double cost = 1;
-    if (cost_ != kNone && cost_ < count) {
-      const std::string& field = fields[cost_];
-      const std::optional<double> number = field.starts_with('{') ? cost_in_dictionary(field) : parse_number(field);
-      if (!number || *number < 0) fail("bad cost", "a number from 0 up", field);
-      cost = *number;
-    }
-    edges_.push_back({from, to, cost});
-  }
-
-  NodeId node(const std::string& id) {
-    if (ids_.add(id)) return ids_.count() - 1;
-    return ids_.find(id);
+    const NodeId from = builder_.node_or_new(fields[from_]);
+    builder_.add_edge(from, builder_.node_or_new(fields[to_]), /*one_way=*/false);
+    any_ = true;
+    if (cost_ == kNone || cost_ >= count) return;
+    const std::string& field = fields[cost_];
+    builder_.set_edge("cost", field.starts_with('{') ? cost_in_dictionary(field) : field);
   }
 
   Lines lines_;
@@ -167,8 +145,8 @@ class Reader {
   int from_ = 0;
   int to_ = 1;
   int cost_ = 2;
-  NodeIds ids_;
-  std::vector<Edge> edges_;
+  bool any_ = false;  // edge
+  GraphBuilder builder_;
 };
 
 }  // namespace
@@ -176,13 +154,17 @@ class Reader {
 bool is_edge_list(std::string_view text) {
   Lines lines(text);
   while (lines.next()) {
-    if (!is_comment(lines.line())) return split(lines.line(), separator_of(lines.line())).size() >= 2;
+    const std::string_view line = lines.line();
+    if (is_comment(line)) continue;
+    const bool printable =
+        std::none_of(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' ' && c != '\t'; });
+    return printable && split(line, separator_of(line)).size() >= 2;
   }
   return false;
 }
 
 GraphMap parse_edge_list(std::string_view text, const std::string& source) {
-  return Reader(text, source).read();
+  return EdgeListReader(text, source).read();
 }
 
 }  // namespace graphdrl

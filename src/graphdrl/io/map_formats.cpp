@@ -6,6 +6,7 @@
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/dimacs.h"
 #include "graphdrl/io/edge_list.h"
+#include "graphdrl/io/graphml.h"
 #include "graphdrl/io/moving_ai.h"
 #include "graphdrl/io/tsplib.h"
 
@@ -33,6 +34,12 @@ constexpr std::array kFormats = {
               .recognise = is_node_link,
               .read = read<parse_node_link>,
               .write_graph = format_node_link},
+    MapFormat{.name = "graphml",
+              .ending = ".graphml",
+              .purpose = "any graph as XML, as networkx, igraph, Gephi and yEd write it",
+              .recognise = is_graphml,
+              .read = read<parse_graphml>,
+              .write_graph = format_graphml},
     MapFormat{.name = "moving-ai",
               .ending = ".map",
               .purpose = "grid maps of games, cities and mazes (movingai.com)",

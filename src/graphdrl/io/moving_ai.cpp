@@ -12,8 +12,8 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::string_view kFree = ".GS";
-constexpr std::string_view kBlocked = "@OTW";
+constexpr std::string_view kFreeCells = ".GS";
+constexpr std::string_view kBlockedCells = "@OTW";
 
 // Reads the header, to the line `map`.
 GridMap parse_header(Lines& lines, const std::string& source) {
@@ -81,8 +81,8 @@ GridMap parse_moving_ai(std::string_view text, const std::string& source) {
                    .where = fmt::format("{}:{}", source, lines.number())});
     }
     for (const char& c : line) {
-      const bool blocked = kBlocked.find(c) != std::string_view::npos;
-      if (!blocked && kFree.find(c) == std::string_view::npos) {
+      const bool blocked = kBlockedCells.find(c) != std::string_view::npos;
+      if (!blocked && kFreeCells.find(c) == std::string_view::npos) {
         throw Error({.what = "strange character in the map",
                      .expected = "one of .GS (free) or @OTW (blocked)",
                      .got = in_quotes({&c, 1}),

@@ -17,9 +17,9 @@ namespace {
 using nlohmann::json;
 
 // The keys of nodes and links that are looked at.
-enum Key { kId, kBlocked, kPrize, kSource, kTarget, kWeight, kCost, kKeyCount };
-constexpr std::array<const char*, kKeyCount> kKeyNames = {"id",     "blocked", "prize", "source",
-                                                          "target", "weight",  "cost"};
+enum Key { kId, kBlocked, kPrize, kX, kY, kSource, kTarget, kWeight, kCost, kKeyCount };
+constexpr std::array<const char*, kKeyCount> kKeyNames = {"id",     "blocked", "prize",  "x",   "y",
+                                                          "source", "target",  "weight", "cost"};
 
 // What stands under one of these keys.
 struct Field {
@@ -56,9 +56,9 @@ json value_at(std::string_view text, const std::string& key, std::int64_t index)
 }
 
 // Takes nlohmann's SAX events (their names are the library's) and fills the arrays of a graph.
-class Reader {
+class NodeLinkReader {
  public:
-  Reader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  NodeLinkReader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
   GraphMap read();
 
@@ -127,7 +127,7 @@ class Reader {
   std::vector<Edge> edges_;
 };
 
-void Reader::fail(const std::string& what, const std::string& expected, Key key) const {
+void NodeLinkReader::fail(const std::string& what, const std::string& expected, Key key) const {
   require_shallow_json(text_, source_);
   json item = value_at(text_, section_key_, index_);
   const bool under_key = key != kKeyCount && item.is_object() && item.contains(kKeyNames[key]);
@@ -137,7 +137,7 @@ void Reader::fail(const std::string& what, const std::string& expected, Key key)
                .where = fmt::format("{}: {}[{}]", source_, section_key_, index_)});
 }
 
-void Reader::fail_at_key(const std::string& expected) const {
+void NodeLinkReader::fail_at_key(const std::string& expected) const {
   require_shallow_json(text_, source_);
   throw Error({.what = "bad value",
                .expected = expected,
@@ -145,7 +145,7 @@ void Reader::fail_at_key(const std::string& expected) const {
                .where = fmt::format("{}: {}", source_, section_key_)});
 }
 
-Reader::Section Reader::section_of(const std::string& key) {
+NodeLinkReader::Section NodeLinkReader::section_of(const std::string& key) {
   if (links_only_) return key == links_key_ ? Section::kLinks : Section::kOther;
   if (key == "directed") return Section::kDirected;
   const bool links = key == "links" || (key == "edges" && links_key_ != "links");
@@ -160,7 +160,7 @@ Reader::Section Reader::section_of(const std::string& key) {
   return Section::kLinks;
 }
 
-bool Reader::key(std::string& name) {
+bool NodeLinkReader::key(std::string& name) {
   if (depth_ == kDocument) {
     section_ = section_of(name);
     section_key_ = std::move(name);
@@ -170,7 +170,7 @@ bool Reader::key(std::string& name) {
   return true;
 }
 
-bool Reader::value(const Field& field, std::string_view text) {
+bool NodeLinkReader::value(const Field& field, std::string_view text) {
   if (depth_ == kOutside) {
     throw Error({.what = "not a graph in node-link form", .expected = "an object", .where = source_});
   }
@@ -189,11 +189,11 @@ bool Reader::value(const Field& field, std::string_view text) {
 }
 
 // Goes one level deeper.
-void Reader::enter() {
+void NodeLinkReader::enter() {
   if (++depth_ > kMaxJsonDepth) require_shallow_json(text_, source_);
 }
 
-bool Reader::start_object(std::size_t) {
+bool NodeLinkReader::start_object(std::size_t) {
   if (depth_ == kArray && reading_) {
     for (Field& field : fields_) field.kind = Field::Kind::kMissing;
   } else if (depth_ != kOutside) {
@@ -203,7 +203,7 @@ bool Reader::start_object(std::size_t) {
   return true;
 }
 
-bool Reader::end_object() {
+bool NodeLinkReader::end_object() {
   if (--depth_ != kArray || !reading_) return true;
   if (section_ == Section::kNodes) {
     read_node();
@@ -214,7 +214,7 @@ bool Reader::end_object() {
   return true;
 }
 
-bool Reader::start_array(std::size_t) {
+bool NodeLinkReader::start_array(std::size_t) {
   const bool items = depth_ == kDocument && (section_ == Section::kNodes || section_ == Section::kLinks);
   if (!items) value({.kind = Field::Kind::kOther});
   if (items) {
@@ -225,14 +225,14 @@ bool Reader::start_array(std::size_t) {
   return true;
 }
 
-bool Reader::end_array() {
+bool NodeLinkReader::end_array() {
   if (--depth_ != kDocument || !reading_) return true;
   (section_ == Section::kNodes ? nodes_read_ : links_read_) = true;
   reading_ = false;
   return true;
 }
 
-NodeId Reader::node_at(Key key) const {
+NodeId NodeLinkReader::node_at(Key key) const {
   const Field& field = fields_[key];
   if (!field.given()) fail(fmt::format("no key \"{}\"", kKeyNames[key]), "an object with it");
   if (!field.is_id()) fail(fmt::format("bad \"{}\"", kKeyNames[key]), "a text or a whole number", key);
@@ -242,7 +242,7 @@ NodeId Reader::node_at(Key key) const {
 }
 
 // A cost or a prize; 1 unless given.
-double Reader::number_at(Key key) const {
+double NodeLinkReader::number_at(Key key) const {
   const Field& field = fields_[key];
   if (!field.given()) return 1;
   if (!field.is_number() || !(field.number >= 0)) {
@@ -251,7 +251,7 @@ double Reader::number_at(Key key) const {
   return field.number + 0.0;  // turns -0 into 0
 }
 
-void Reader::read_node() {
+void NodeLinkReader::read_node() {
   const Field& id = fields_[kId];
   if (!id.given()) fail("no key \"id\"", "an object with it");
   if (!id.is_id()) fail("bad \"id\"", "a text or a whole number", kId);
@@ -260,18 +260,21 @@ void Reader::read_node() {
   const Field& blocked = fields_[kBlocked];
   if (blocked.given() && blocked.kind != Field::Kind::kBoolean) fail("bad \"blocked\"", "true or false", kBlocked);
   map_.blocked.push_back(blocked.given() && blocked.truth);
+  if (fields_[kX].is_number() && fields_[kY].is_number()) {
+    map_.places.push_back({fields_[kX].number, fields_[kY].number});
+  }
   const double prize = number_at(kPrize);
   if (prize == 1 && map_.prizes.empty()) return;
   map_.prizes.resize(map_.blocked.size(), 1.0);
   map_.prizes.back() = prize;
 }
 
-void Reader::read_link() {
+void NodeLinkReader::read_link() {
   const NodeId source = node_at(kSource);
   edges_.push_back({source, node_at(kTarget), number_at(fields_[kWeight].given() ? kWeight : kCost)});
 }
 
-GraphMap Reader::read() {
+GraphMap NodeLinkReader::read() {
   json::sax_parse(text_, this);
   if (!nodes_read_) throw Error({.what = "no key \"nodes\"", .where = source_});
   if (std::find(map_.blocked.begin(), map_.blocked.end(), false) == map_.blocked.end()) {
@@ -284,6 +287,7 @@ GraphMap Reader::read() {
   }
   map_.graph = Graph::from_edges(ids_.count(), edges_, directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
   map_.labels = ids_.take_labels();
+  if (map_.places.size() != map_.blocked.size()) map_.places.clear();
   return std::move(map_);
 }
 
@@ -294,15 +298,15 @@ void append_text(std::string& text, const std::string& value) {
 }  // namespace
 
 GraphMap parse_node_link(std::string_view text, const std::string& source) {
-  return Reader(text, source).read();
+  return NodeLinkReader(text, source).read();
 }
 
 std::string format_node_link(const GraphMap& map) {
-  return format_node_link(map.graph, map.blocked, map.labels, map.prizes);
+  return format_node_link(map.graph, map.blocked, map.labels, map.prizes, map.places);
 }
 
 std::string format_node_link(const Graph& graph, const std::vector<bool>& blocked, std::span<const std::string> labels,
-                             std::span<const double> prizes) {
+                             std::span<const double> prizes, std::span<const Point> places) {
   std::string text;
   const auto append_id = [&](NodeId node) {
     if (labels.empty()) {
@@ -317,6 +321,9 @@ std::string format_node_link(const Graph& graph, const std::vector<bool>& blocke
     append_id(node);
     if (blocked[node]) text += R"(,"blocked":true)";
     if (!prizes.empty() && prizes[node] != 1) text += R"(,"prize":)" + json(prizes[node]).dump();
+    if (!places.empty()) {
+      text += R"(,"x":)" + json(places[node].x).dump() + R"(,"y":)" + json(places[node].y).dump();
+    }
     text += '}';
   }
   text += R"(],"links":[)";

@@ -31,11 +31,6 @@ constexpr NodeId kMostExplicit = 20'000;  // a matrix of 3 GB
 constexpr double kMostNumber = 1e15;      // of places, costs and scores: distances stay whole, and sums finite
 constexpr std::string_view kSpace = " \t\r\n";
 
-struct Point {
-  double x;
-  double y;
-};
-
 bool is_keyword(std::string_view word) {
   return std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
 }
@@ -203,6 +198,7 @@ class TsplibReader {
         point.x = number(name);
         point.y = number(name);
       }
+      if (places_.empty() || name == "NODE_COORD_SECTION") places_ = points;
       if (name == "NODE_COORD_SECTION") points_ = std::move(points);
     } else if (name == "NODE_SCORE_SECTION") {
       prizes_.resize(count);
@@ -264,6 +260,7 @@ class TsplibReader {
                  .blocked = std::vector<bool>(nodes_),
                  .labels = {},
                  .prizes = std::move(prizes_),
+                 .places = std::move(places_),
                  .task = task_};
     for (NodeId node = 1; node <= nodes_; ++node) map.labels.push_back(std::to_string(node));
     return map;
@@ -293,7 +290,8 @@ class TsplibReader {
   NodeId nodes_ = 0;
   std::map<std::string, std::string> header_;  // and the sections met
   GivenTask task_;
-  std::vector<Point> points_;
+  std::vector<Point> points_;  // that costs are computed from
+  std::vector<Point> places_;  // the same, or how the file is drawn
   std::vector<double> prizes_;
   std::vector<double> matrix_;  // [N, N]
 };

@@ -1,0 +1,25 @@
+// Graphs as GraphML, what networkx, igraph, Gephi, yEd and Boost write.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "graphdrl/io/node_link.h"
+
+namespace graphdrl {
+
+// Whether a text is XML with an element `graphml`.
+bool is_graphml(std::string_view text);
+
+// One graph [Brandes et al. 2002, graphml.graphdrawing.org], directed where it or one of its edges says so; an edge
+// that does not lead one way leads both ways then. Attributes by their names (`attr.name`), defaults too: `weight`,
+// `cost`, `length` or `distance` of edges, 1 unless given; `prize` or `score`, `blocked`, `x` and `y` or `lon` and
+// `lat`, and `label` or `name` of nodes; others are skipped. Throws Error, naming `source` and mostly the line, on XML
+// that is not well formed, on no graph or several, on graphs within nodes, on edges between more than two nodes, on an
+// id used twice, and on values out of range.
+GraphMap parse_graphml(std::string_view text, const std::string& source);
+
+// Ends with a line break. Keeps all but the task.
+std::string format_graphml(const GraphMap& map);
+
+}  // namespace graphdrl
