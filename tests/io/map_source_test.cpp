@@ -38,6 +38,15 @@ TEST(MapSource, ReadsFilesAndFolders) {
   EXPECT_THAT(names(load_maps((folder / "two.txt").string())), ElementsAre("two"));
 }
 
+TEST(MapSource, SkipsAByteOrderMark) {
+  const TemporaryFolder folder;
+  write_file(folder / "table.csv",
+             "\xEF\xBB\xBF"
+             "from,to\na,b\n");
+  const NamedMap named = load_map((folder / "table.csv").string());
+  EXPECT_THAT(std::get<GraphMap>(named.map).labels, ElementsAre("a", "b"));
+}
+
 TEST(MapSource, RefusesWhatIsNotThere) {
   const TemporaryFolder folder;
   EXPECT_THAT(error_of([] { load_maps("paper:k"); }), HasSubstr("expected paper:a to paper:j, got 'paper:k'"));

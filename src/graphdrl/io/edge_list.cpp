@@ -94,7 +94,7 @@ std::string_view cost_in_dictionary(std::string_view text) {
 class EdgeListReader {
  public:
   EdgeListReader(std::string_view text, const std::string& source)
-      : lines_(text), source_(source), builder_(false, [this] { return place(); }) {}
+      : lines_(text), source_(source), builder_([this] { return place(); }) {}
 
   GraphMap read() {
     bool first = true;

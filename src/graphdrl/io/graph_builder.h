@@ -25,7 +25,7 @@ bool is_name_of(std::string_view name, std::span<const std::string_view> names);
 class GraphBuilder {
  public:
   // place: where in the file the reader is, for errors.
-  GraphBuilder(bool directed, std::function<std::string()> place) : directed_(directed), place_(std::move(place)) {}
+  explicit GraphBuilder(std::function<std::string()> place) : place_(std::move(place)) {}
 
   // Throws Error where a node has this id already.
   NodeId add_node(std::string_view id);
@@ -34,7 +34,7 @@ class GraphBuilder {
   // The same; a new node where there is none.
   NodeId node_or_new(std::string_view id);
 
-  // In a directed graph an edge may lead both ways; one that leads one way makes the graph directed.
+  // One edge that leads one way makes the graph directed; the others lead both ways then.
   void add_edge(NodeId from, NodeId to, bool one_way);
 
   // What an attribute of a node, or of the edge added last, says; those of other names are skipped. Throws Error on a
@@ -62,7 +62,7 @@ class GraphBuilder {
   double number(std::string_view name, std::string_view value, bool may_be_negative) const;
   std::vector<std::string> take_labels();
 
-  bool directed_;
+  bool directed_ = false;
   std::function<std::string()> place_;
   NodeIds ids_;
   std::vector<Attributes> nodes_;  // as many as the last one that has an attribute

@@ -16,7 +16,7 @@ namespace {
 class GraphMlReader {
  public:
   GraphMlReader(std::string_view text, const std::string& source)
-      : text_(text), source_(source), builder_(false, [this] { return place(); }) {}
+      : text_(text), source_(source), builder_([this] { return place(); }) {}
 
   GraphMap read() {
     pugi::xml_document document;
@@ -129,7 +129,7 @@ void append_data(pugi::xml_node item, const char* key, const std::string& value)
 
 bool is_graphml(std::string_view text) {
   constexpr std::size_t kLooked = 4096;  // comments may stand before it
-  const std::size_t begin = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos || text[begin] != '<') return false;
   return text.substr(0, kLooked).find("<graphml") != std::string_view::npos;
 }

@@ -11,6 +11,7 @@ namespace graphdrl {
 namespace {
 
 constexpr std::string_view kPaperLetters = "abcdefghij";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets begin UTF-8 with it
 
 NamedMap paper_map(char letter) {
   const std::string name = std::string("paper:") + letter;
@@ -18,7 +19,9 @@ NamedMap paper_map(char letter) {
 }
 
 NamedMap file_map(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
+  const std::string content = read_file(path);
+  std::string_view text = content;
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   return {path.stem().string(), format_of(text).read(text, path.string())};
 }
 
