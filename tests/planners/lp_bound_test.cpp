@@ -89,10 +89,63 @@ TEST(LpBound, IsTheOptimumOnRandomWorlds) {
     ASSERT_LE(found.cost, task.limit());
     ASSERT_NEAR(found.prize, optimum, 1e-8);
     ASSERT_TRUE(task.ends_anywhere() || found.walk.back() == task.end);
+    Plan plan = NearestPlanner().plan(task);
+    improve(*lp, task, plan);
+    ASSERT_TRUE(plan.optimal);
   }
   EXPECT_GT(compared, 8'000);
   EXPECT_GT(tight, tight_before + (compared - tight_before) / 2) << "the root is loose";
   RecordProperty("tight", tight);
+}
+
+// A star: the start in the middle, a leaf for each prize.
+World star(const std::vector<double>& prizes_of_leaves) {
+  std::vector<Edge> edges;
+  std::vector<double> prizes = {0};
+  for (const double prize : prizes_of_leaves) {
+    edges.push_back({0, static_cast<NodeId>(prizes.size())});
+    prizes.push_back(prize);
+  }
+  const auto nodes = static_cast<NodeId>(prizes.size());
+  return World("star", Graph::from_edges(nodes, edges), std::vector<bool>(nodes), {}, prizes);
+}
+
+TEST(LpBound, TellsLargePrizesApart) {
+  if (!has_lp_bound()) GTEST_SKIP() << "built without CLP";
+  const World world = star({9e8, 9e8, 9e8, 10, 1});
+  const auto lp = make_lp_bound({.view = world, .start = 0, .budget = 7}, kNoLimit);  // four leaves of five
+  lp->branch(2.7e9 + 1, {});
+  EXPECT_EQ(lp->bound(), 2.7e9 + 10);
+  EXPECT_FALSE(lp->walk().empty());
+}
+
+TEST(LpBound, IsProvedWhereTheBudgetIsJustBelowAStep) {
+  if (!has_lp_bound()) GTEST_SKIP() << "built without CLP";
+  const World world = star({1, 1, 1, 1});
+  const auto lp = make_lp_bound({.view = world, .start = 0, .budget = 4.9999999}, kNoLimit);
+  lp->branch(0, {});
+  EXPECT_EQ(lp->bound(), 2);
+}
+
+TEST(LpBound, ReachesTheSameInSlicesOfWork) {
+  if (!has_lp_bound()) GTEST_SKIP() << "built without CLP";
+  const World world = split_world({.family = "braided-maze", .size = 11}, Split::kTrain, 4);
+  const Task task{.view = world, .start = world.valid_nodes().front(), .budget = 0.6 * world.valid_count()};
+  const auto whole = make_lp_bound(task, kNoLimit);
+  whole->branch(0, {});
+  const auto sliced = make_lp_bound(task, kNoLimit);
+  double last = kNoLimit;
+  int slices = 0;
+  double found = 0;
+  for (; slices < 1'000'000 && found < sliced->bound(); ++slices) {
+    sliced->branch(0, {.work = 1e5});
+    ASSERT_LE(sliced->bound(), last);
+    last = sliced->bound();
+    if (!sliced->walk().empty()) found = plan_of_walk(task, sliced->walk()).prize;
+  }
+  EXPECT_GT(slices, 3);
+  EXPECT_EQ(sliced->bound(), whole->bound());
+  EXPECT_EQ(found, whole->bound());
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report&
            seconds_to(*deadline) > kLongTime * kStepS * static_cast<double>(steps)) {
       const auto begin = steady_clock::now();
       search(steps);
-      branch({.deadline = steady_clock::now() + (steady_clock::now() - begin)});
+      branch({.deadline = std::min(*deadline, steady_clock::now() + (steady_clock::now() - begin))});
       steps *= 2;
     }
     search(0);

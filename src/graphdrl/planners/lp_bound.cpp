@@ -12,10 +12,9 @@ namespace {
 using Outcome = LinearProgram::Outcome;
 
 constexpr std::int64_t kMostEdges = 4'000;
-constexpr double kPrizeMargin = 1e-9;  // relative, of bounds where they add up to anything
-constexpr int kRoundsOfCuts = 5;       // in a branch
-constexpr double kLeastFall = 0.01;    // of the bound by a round of cuts, in steps of prize or parts of the bound
-constexpr int kPatience = 5;           // rounds of cuts at the root without such a fall
+constexpr int kRoundsOfCuts = 5;     // in a branch
+constexpr double kLeastFall = 0.01;  // of the bound by a round of cuts, in steps of prize or parts of the bound
+constexpr int kPatience = 5;         // rounds of cuts at the root without such a fall
 
 class BranchAndCut final : public LpBound {
  public:
@@ -27,7 +26,7 @@ class BranchAndCut final : public LpBound {
 
   void cut(double prize, Effort effort) override;
   void branch(double prize, Effort effort) override;
-  double bound() const override { return std::max(prize_, bound_); }
+  double bound() const override { return beaten(bound_) ? prize_ : bound_; }
   const std::vector<NodeId>& walk() const override { return walk_; }
 
  private:
@@ -49,7 +48,11 @@ class BranchAndCut final : public LpBound {
 
   LinearProgram& program() { return relaxation_.program(); }
   double rounded(double bound) const;
-  bool beaten(double bound) const { return bound <= prize_ * (1 + kPrizeMargin) + 1e-12; }
+  // Whether no walk within this bound is better than the best one known.
+  bool beaten(double bound) const {
+    const double step = relaxation_.prize_step();
+    return bound <= (step > 0 ? prize_ + 0.5 * step : prize_ * (1 + kBoundMargin) + 1e-12);
+  }
   // What is left of the work, where `before` had been done.
   double work_left(const Effort& effort, std::int64_t before) const {
     return effort.work - static_cast<double>(relaxation_.work() - before);
@@ -60,7 +63,9 @@ class BranchAndCut final : public LpBound {
   void apply(const std::vector<Change>& changes);
   void fix_by_reduced_costs(std::vector<Change>& changes);
   void take_walk();
-  Outcome solve_part(Part& part, const Effort& effort);
+  Outcome solve_part(Part& part, const Effort& effort, std::int64_t before);
+  bool branch_on(Part part, const Effort& effort, std::int64_t before);
+  void settle_bound();
 
   Task task_;
   WalkRelaxation relaxation_;
@@ -81,6 +86,7 @@ double BranchAndCut::rounded(double bound) const {
 
 void BranchAndCut::cut(double prize, Effort effort) {
   prize_ = std::max(prize_, prize);
+  apply({});
   const std::int64_t before = relaxation_.work();
   const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
   double last = kNoLimit;
@@ -131,12 +137,13 @@ void BranchAndCut::take_walk() {
 }
 
 // Solves a part with rounds of cuts, until it is beaten or cuts do not help.
-Outcome BranchAndCut::solve_part(Part& part, const Effort& effort) {
+Outcome BranchAndCut::solve_part(Part& part, const Effort& effort, std::int64_t before) {
   apply(part.changes);
   const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
   double last = kNoLimit;
   for (int round = 0;; ++round) {
-    const Outcome outcome = program().solve(effort.deadline);
+    if (spent(effort, before)) return Outcome::kStopped;
+    const Outcome outcome = program().solve(effort.deadline, work_left(effort, before));
     if (outcome == Outcome::kInfeasible) part.bound = -kNoLimit;
     if (outcome == Outcome::kInfeasible) return outcome;
     part.estimate = std::min(part.estimate, program().bound());
@@ -150,40 +157,47 @@ Outcome BranchAndCut::solve_part(Part& part, const Effort& effort) {
   }
 }
 
+void BranchAndCut::settle_bound() {
+  bound_ = parts_.empty() ? prize_ : std::min(bound_, std::max(prize_, parts_.top().bound));
+}
+
+// Solves a part, and puts back what is left of it to solve. Whether to go on.
+bool BranchAndCut::branch_on(Part part, const Effort& effort, std::int64_t before) {
+  relaxation_.remove_slack_rows();
+  const Outcome outcome = solve_part(part, effort, before);
+  if (outcome == Outcome::kInfeasible || beaten(part.bound)) return true;
+  if (outcome == Outcome::kStopped) {
+    parts_.push(std::move(part));
+    return false;
+  }
+  const bool integral = relaxation_.integral();
+  if (integral) take_walk();
+  if (beaten(part.bound)) return true;
+  if (!integral) fix_by_reduced_costs(part.changes);
+  const WalkRelaxation::Branches branches = integral ? WalkRelaxation::Branches() : relaxation_.branches();
+  if (branches.first.empty() && branches.second.empty()) {  // late, or by rounding
+    parts_.push(std::move(part));
+    return false;
+  }
+  for (const auto& changes : {branches.first, branches.second}) {
+    Part child = part;
+    ++child.depth;
+    child.changes.insert(child.changes.end(), changes.begin(), changes.end());
+    parts_.push(std::move(child));
+  }
+  return true;
+}
+
 void BranchAndCut::branch(double prize, Effort effort) {
   prize_ = std::max(prize_, prize);
   const std::int64_t before = relaxation_.work();
   if (!begun_) parts_.push({bound_, kNoLimit, 0, {}});
   begun_ = true;
-  while (!beaten(bound_) && !spent(effort, before)) {
-    if (parts_.empty() || beaten(parts_.top().bound)) {
-      bound_ = prize_;
-      break;
-    }
-    bound_ = std::min(bound_, parts_.top().bound);
+  settle_bound();
+  for (bool go_on = true; go_on && !beaten(bound_) && !spent(effort, before); settle_bound()) {
     Part part = parts_.top();
     parts_.pop();
-    relaxation_.remove_slack_rows();
-    const Outcome outcome = solve_part(part, effort);
-    if (outcome == Outcome::kInfeasible || beaten(part.bound)) continue;
-    if (outcome == Outcome::kStopped) {
-      parts_.push(std::move(part));
-      break;
-    }
-    if (relaxation_.integral()) {
-      take_walk();
-      if (beaten(part.bound)) continue;
-      parts_.push(std::move(part));  // late, or by rounding
-      break;
-    }
-    fix_by_reduced_costs(part.changes);
-    const WalkRelaxation::Branches branches = relaxation_.branches();
-    for (const auto& changes : {branches.first, branches.second}) {
-      Part child = part;
-      ++child.depth;
-      child.changes.insert(child.changes.end(), changes.begin(), changes.end());
-      parts_.push(std::move(child));
-    }
+    go_on = branch_on(std::move(part), effort, before);
   }
 }
 

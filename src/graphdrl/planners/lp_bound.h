@@ -31,7 +31,9 @@ class LpBound {
   // Goes on from there by branching, until a walk is optimal or the effort is spent.
   virtual void branch(double prize, Effort effort) = 0;
 
-  // No walk has a higher prize; not below the prizes told.
+  // No walk has a higher prize; not below the prizes told. Where prizes do not add up in steps, one may have a share of
+  // kBoundMargin more.
+  static constexpr double kBoundMargin = 1e-9;
   virtual double bound() const = 0;
   // A walk that branching found, better than any it was told of, or empty.
   virtual const std::vector<NodeId>& walk() const = 0;

@@ -123,7 +123,7 @@ void WalkRelaxation::add_rows(const Task& task) {
   for (const Arc& arc : arcs_) costs.push_back(arc.cost);
   const double step = common_step(costs);
   LinearProgram::Row& cost = rows.emplace_back();
-  cost.upper = step > 0 ? std::floor(task.limit() / step + kStepRounding) : task.limit();
+  cost.upper = step > 0 ? std::floor(task.limit() / step) : task.limit();  // with a billionth where sums are not exact
   for (const Arc& arc : arcs_) add_uses(cost, arc, step > 0 ? std::round(arc.cost / step) : arc.cost);
   if (step > 0) {
     const std::vector<bool> odd = odd_ends(step, cost.upper);
