@@ -42,10 +42,11 @@ class ExplorerScorer final : public FirstVisitScorer {
   // Throws Error as score() does.
   void shortfalls(const ExplorerBatch& batch, std::vector<float>& shortfall);
 
-  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. A score is the
-  // shortfall, less the prize in mean prizes where there are prizes, and 0.5 u nodes for every mean edge of the first
-  // visit's cost, with a share u of the work out of scope. The nearest whose score is within 0.8 u² nodes of the least,
-  // or the least where edges lead one way: the less the network sees, the less its word counts.
+  // Which of a state's first visits to make, of at least one, nearest first; batch: that state alone. With a share u of
+  // the work out of scope,
+  //   score = shortfall - prize / mean prize (where there are prizes) + 0.5 u cost / mean edge cost.
+  // Takes the nearest whose score is at most the least score + 0.8 u²; where edges lead one way, the least score. So
+  // the less the network sees, the less its word counts.
   std::size_t choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
 
   ExplorerEncoder& encoder() { return encoder_; }

@@ -293,8 +293,9 @@ void WalkRelaxation::separate_parity(Deadline deadline) {
   if (found_.empty()) separate_parity_cuts(deadline);
 }
 
-// S from the minimum cuts between nodes, by how far values are from whole numbers: if any row is violated, then one of
-// a cut tree [Padberg and Rao 1982; Letchford, Reinelt and Theis 2008]. The cuts are those of an equivalent flow tree
+// S from the minimum cuts between nodes, by how far values are from whole numbers: those
+// of a cut tree, which hold a violated row where there is one without ends [Padberg and Rao 1982; Letchford, Reinelt
+// and Theis 2008]. The cuts are those of an equivalent flow tree
 // [Gusfield 1990].
 void WalkRelaxation::separate_parity_cuts(Deadline deadline) {
   const int count = static_cast<int>(nodes_.size());
@@ -340,7 +341,6 @@ void WalkRelaxation::separate_parity_of(const std::vector<int>& component) {
     double flip = 1;      // how much further one of them is from the other, at least
     bool odd = false;     // how many are nearer to 1
     double end = 0;
-    double size = 0;
 
     void add(double part) {
       distance += std::min(part, 1 - part);
@@ -353,11 +353,7 @@ void WalkRelaxation::separate_parity_of(const std::vector<int>& component) {
     if (component[arc.from] == component[arc.to]) continue;
     for (const int node : {arc.from, arc.to}) cuts[component[node]].add(value(arc.once));
   }
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    cuts[component[i]].end += value(end_[i]);
-    cuts[component[i]].size += 1;
-  }
-  std::vector<double> seen;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) cuts[component[i]].end += value(end_[i]);
   // Of two parts the cut is the same.
   for (int which = cuts.size() == 2 ? 1 : 0; which < std::ssize(cuts); ++which) {
     Cut& cut = cuts[which];

@@ -14,9 +14,8 @@
 //   connection  x(δ(S)) + z(S) >= 2 y[v] for v in S; directed: x(in(S)) >= y[v]
 //   blocks      y[v] <= y[r], where r parts v's block from the start
 //   partition   u + w of all edges between the parts V0, V1 … Vk of V, of which V0 has s, >= y[v1] + … + y[vk], vi in
-//   Vi parity      an even number of the u of δ(S) and of z(S) is 1: u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1), for
-//   any
-//               F in δ(S)
+//   Vi parity      u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1) for any F in δ(S): of the u of δ(S) and z(S), an even
+//               number is 1
 // Degrees, cost and ends are there from the beginning, the others once a solution violates them: connection by maximum
 // flows from each node to the start, parity for components of the edges with a fraction.
 #pragma once
