@@ -1,5 +1,6 @@
 #include "graphdrl/io/map_formats.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "graphdrl/io/moving_ai.h"
@@ -12,7 +13,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 AnyMap read(const std::string& text) {
-  return format_of(text).read(text, "file");
+  return format_of(text).read(text, "file", {});
 }
 
 GraphMap read_graph(const std::string& text) {
@@ -38,6 +39,16 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"edge-list", "a,b\n"},
       {"ascii", "a\x01 b\n"},
       {"edge-list", "\"a b\";c;1\n"},
+      {"edge-list", "P5 10 3\n"},
+      {"edge-list", "graph 1\n"},
+      {"gml", "# by hand\nCreator \"a\"\ngraph\n[\n]\n"},
+      {"dot", "/* x */ strict  digraph \"a\" {"},
+      {"dot", "// x\ngraph{}"},
+      {"pajek", "% x\n*vertices 3\n"},
+      {"netpbm", "P2\n# x\n1 1 255 0"},
+      {"png", "\x89PNG\r\n\x1a\n"},
+      {"numpy", "\x93NUMPY\x01"},
+      {"ros", "resolution: 0.05\nimage: a.pgm\n"},
   };
   for (const auto& [name, text] : texts) EXPECT_EQ(format_of(text).name, name) << text;
 }
@@ -161,7 +172,7 @@ TEST(GraphMl, TakesWhatOthersWrite) {
   const GraphMap map = read_graph(kGraphMl);
   EXPECT_THAT(map.labels, ElementsAre("dock & yard", "gate", "hall"));
   EXPECT_THAT(map.prizes, ElementsAre(5, 2, 2));
-  EXPECT_TRUE(map.places.empty());
+  EXPECT_TRUE(map.places.points.empty());
   EXPECT_FALSE(map.graph.directed());
   EXPECT_EQ(map.graph.cost(1, 0), 2.5);
   EXPECT_EQ(map.graph.cost(1, 1), 1);
@@ -195,6 +206,159 @@ TEST(GraphMl, RefusesWhatIsNoFlatGraph) {
               HasSubstr("bad weight: expected a number from 0 up, got '-1'"));
 }
 
+TEST(Gml, TakesWhatOthersWrite) {
+  const GraphMap map = read_graph(R"(# comment
+Creator "somebody"
+graph [
+  directed 1
+  name "x [ y"
+  edge [ source 10 target 11 weight 2.5 data [ weight "x" ] ]
+  node [ id 10 label "a &amp; &quot;b&quot; &#252;" graphics [ x 1.5 y -2 w 9 ] ]
+  node [ id 11 label "gate" score 3 graphics [ x 0 y 0 ] ]
+]
+)");
+  EXPECT_THAT(map.labels, ElementsAre("a & \"b\" ü", "gate"));
+  EXPECT_TRUE(map.graph.directed());
+  EXPECT_EQ(map.graph.cost(0, 0), 2.5);
+  EXPECT_THAT(map.prizes, ElementsAre(1, 3));
+  EXPECT_THAT(map.places.points, ElementsAre(Point{1.5, -2}, Point{0, 0}));
+}
+
+TEST(Gml, RefusesWhatIsNoGraph) {
+  const auto complaint = [](const std::string& rest) { return error_of([&] { read("graph [\n" + rest); }); };
+  EXPECT_THAT(complaint(""), HasSubstr("the file ends within a list"));
+  EXPECT_THAT(complaint("node ["), HasSubstr("the file ends within a list"));
+  EXPECT_THAT(complaint("]"), HasSubstr("no free node"));
+  EXPECT_THAT(complaint("]\ngraph [ ]"), HasSubstr("file:3: a second graph"));
+  EXPECT_THAT(complaint("node [ label \"a\" ] ]"), HasSubstr("a node without `id`"));
+  EXPECT_THAT(complaint("node [ id 1 ]\nnode [ id 1 ] ]"), HasSubstr("file:3: an id used twice"));
+  EXPECT_THAT(complaint("node [ id 1 ]\nedge [ source 1 target 2 ] ]"), HasSubstr("file:3: no such node"));
+  EXPECT_THAT(complaint("node [ id 1 ] edge [ source 1 target 1 weight -1 ] ]"), HasSubstr("bad weight"));
+  EXPECT_THAT(complaint("node [ id 1 ] edge [ source 1 target 1 weight NaN ] ]"), HasSubstr("bad weight"));
+  EXPECT_THAT(complaint("node [ id 1 label \"a ] ]"), HasSubstr("a text that does not end"));
+  EXPECT_THAT(complaint("node [ id ] ]"), HasSubstr("not a value"));
+  EXPECT_THAT(complaint("7 ]"), HasSubstr("not a key"));
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i) deep += "a [ ";
+  EXPECT_THAT(complaint(deep), HasSubstr("too deep"));
+}
+
+TEST(Pajek, TakesWhatOthersWrite) {
+  const GraphMap map = read_graph(
+      "*Network x\n%c\n*Vertices 4\n1 \"a b\" 0.1 0.2 0.5 ellipse\n2 c 1 1\n3 d 2 2\n4 e 3 3\n*Edges\n1 2 2.5\n"
+      "*Arcs :1 \"r\"\n2 3\n*Arcslist\n3 1 4\n*Edgeslist\n4 1\n");
+  EXPECT_THAT(map.labels, ElementsAre("a b", "c", "d", "e"));
+  EXPECT_THAT(map.places.points, ElementsAre(Point{0.1, 0.2}, Point{1, 1}, Point{2, 2}, Point{3, 3}));
+  EXPECT_TRUE(map.graph.directed());
+  EXPECT_EQ(map.graph.edge_count(), 7);
+  EXPECT_EQ(map.graph.cost(1, 0), 2.5);
+  const GraphMap plain = read_graph("*vertices 3\n*edges\n1 3\n");
+  EXPECT_THAT(plain.labels, ElementsAre("1", "2", "3"));
+  EXPECT_FALSE(plain.graph.directed());
+  const GraphMap matrix = read_graph("*Vertices 2\n*Matrix\n0 3\n0 0\n");
+  EXPECT_EQ(matrix.graph.cost(0, 0), 3);
+  EXPECT_EQ(matrix.graph.edge_count(), 1);
+}
+
+TEST(Pajek, RefusesWhatIsNoGraph) {
+  const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
+  EXPECT_THAT(complaint("*Vertices\n"), HasSubstr("file:1: bad number of nodes"));
+  EXPECT_THAT(complaint("*Vertices 10000000\n"), HasSubstr("for a file of this size"));
+  EXPECT_THAT(complaint("*Network\n*Edges\n"), HasSubstr("no *Vertices before"));
+  EXPECT_THAT(complaint("*Network\n1 2\n"), HasSubstr("no *Vertices before"));
+  EXPECT_THAT(complaint("*Vertices 2\n2 a\n1 b\n"), HasSubstr("file:3: a node used twice, or out of order"));
+  EXPECT_THAT(complaint("*Vertices 2\n1 \"a\n"), HasSubstr("a text that does not end"));
+  EXPECT_THAT(complaint("*Vertices 2\n*Edges\n1 3\n"), HasSubstr("file:3: no such node"));
+  EXPECT_THAT(complaint("*Vertices 2\n*Edges\n1\n"), HasSubstr("not an edge"));
+  EXPECT_THAT(complaint("*Vertices 2\n*Edges\n1 2 -1\n"), HasSubstr("bad weight"));
+  EXPECT_THAT(complaint("*Vertices 2\n*Partition x\n"), HasSubstr("a section that is none of a graph"));
+  EXPECT_THAT(complaint("*Vertices 2\n*Matrix\n0 1\n"), HasSubstr("the file ends within *Matrix"));
+  EXPECT_THAT(complaint("*Vertices 2\n*Matrix\n0 1 2\n"), HasSubstr("bad row of *Matrix"));
+}
+
+TEST(Dot, TakesWhatOthersWrite) {
+  const GraphMap map = read_graph(R"(# by hand
+strict digraph "my graph" {
+  graph [bb="0,0,9,9"]; rankdir = LR
+  node [prize=2, label="\N"];
+  start [pos="1.5,-2!", prize=5]  // the start
+  start:n -> { a; b [label="bee"] } -> "c" + "d" [weight=3];
+  subgraph cluster_1 { node [prize=4]; e; }
+  { rank=same; a; e; }
+  e -> -1.5 [label=<<b>bold</b>>, blocked];
+  /* "quoted \" end */ "q\"u" -> start;
+})");
+  EXPECT_THAT(map.labels, ElementsAre("start", "a", "b", "cd", "e", "-1.5", "q\"u"));
+  EXPECT_THAT(map.prizes, ElementsAre(5, 2, 2, 2, 4, 2, 2));
+  EXPECT_TRUE(map.graph.directed());
+  EXPECT_EQ(map.graph.edge_count(), 6);
+  EXPECT_THAT(map.graph.neighbours(0), ElementsAre(1, 2));
+  EXPECT_EQ(map.graph.cost(1, 0), 3);
+  const GraphMap places = read_graph("graph { a [pos=\"1,2\"]; b [pos=\"3,4,5\"]; a -- b }");
+  EXPECT_THAT(places.places.points, ElementsAre(Point{1, 2}, Point{3, 4}));
+}
+
+TEST(Dot, RefusesWhatIsNoGraph) {
+  const auto complaint = [](const std::string& rest) { return error_of([&] { read("graph {\n" + rest); }); };
+  EXPECT_THAT(complaint(""), HasSubstr("file:2: not a node, an edge or an attribute"));
+  EXPECT_THAT(complaint("}"), HasSubstr("no free node"));
+  EXPECT_THAT(complaint("a } graph { b }"), HasSubstr("file:2: more than one graph"));
+  EXPECT_THAT(complaint("a -> b }"), HasSubstr("file:2: the wrong sign of an edge: expected '--' in a graph"));
+  EXPECT_THAT(complaint("a -- b [weight=-1] }"), HasSubstr("file:2: bad weight"));
+  EXPECT_THAT(complaint("a -- b [weight=nan] }"), HasSubstr("bad weight"));
+  EXPECT_THAT(complaint("\"a }"), HasSubstr("a text that does not end"));
+  EXPECT_THAT(complaint("a [label=<b] }"), HasSubstr("a text that does not end"));
+  EXPECT_THAT(complaint("a [= b] }"), HasSubstr("not an attribute"));
+  EXPECT_THAT(complaint("a -- ; }"), HasSubstr("an edge to nowhere"));
+  EXPECT_THAT(complaint(std::string(100'000, '{')), HasSubstr("too deep"));
+  std::string many = "{ a";
+  for (int i = 0; i < 2000; ++i) many += fmt::format(" {}", i);
+  many += " }";
+  EXPECT_THAT(complaint(many + "--" + many + "--" + many + "--" + many), HasSubstr("far more edges"));
+}
+
+TEST(MapFormats, TakeCostsByAnyName) {
+  const auto cost = [](const std::string& text, const std::string& name) {
+    const AnyMap map = format_of(text).read(text, "file", {.cost_attribute = name});
+    return std::get<GraphMap>(map).graph.cost(0, 0);
+  };
+  const std::string json = R"({"nodes":[{"id":0},{"id":1}],"links":[{"source":0,"target":1,"length":4,"time":7}]})";
+  EXPECT_EQ(cost(json, ""), 4);
+  EXPECT_EQ(cost(json, "time"), 7);
+  EXPECT_THAT(error_of([&] { cost(json, "tiem"); }), HasSubstr("no edge has this attribute"));
+  const std::string dot = "graph { a -- b [distance=4, weight=3, time=7] }";
+  EXPECT_EQ(cost(dot, ""), 3);
+  EXPECT_EQ(cost(dot, "time"), 7);
+  EXPECT_EQ(cost(dot, "distance"), 4);
+  EXPECT_THAT(error_of([&] { cost(dot, "tiem"); }), HasSubstr("expected distance, weight, time, got 'tiem'"));
+  EXPECT_EQ(cost("from,to,time,cost\na,b,7,4\n", "time"), 7);
+  EXPECT_EQ(cost("a b {'time': 7, 'weight': 4}\n", "time"), 7);
+  EXPECT_THAT(error_of([&] { cost("a b 7\n", "time"); }), HasSubstr("no edge has this attribute"));
+}
+
+TEST(NodeLink, TakesAttributesByTheirUsualNames) {
+  const GraphMap map =
+      read_graph(R"({"graph":{"unit":"m","x":[{"unit":"k"}]},"nodes":[{"id":5,"name":"a","lon":1,"lat":2,"score":3},)"
+                 R"({"id":6,"label":"b","lon":3,"lat":4}],"edges":[{"source":5,"target":6}]})");
+  EXPECT_THAT(map.labels, ElementsAre("a", "b"));
+  EXPECT_THAT(map.prizes, ElementsAre(3, 1));
+  EXPECT_THAT(map.places.points, ElementsAre(Point{1, 2}, Point{3, 4}));
+}
+
+// Every format that grids are written in keeps their cells.
+TEST(MapFormats, KeepGrids) {
+  const GridMap map{.rows = 2, .cols = 3, .blocked = {false, true, false, true, true, false}};
+  for (const MapFormat& format : map_formats()) {
+    if (format.write_grid == nullptr) continue;
+    const std::string text = format.write_grid(map);
+    EXPECT_EQ(format_of(text).name, format.name);
+    const GridMap again = read_grid(text);
+    EXPECT_EQ(again.rows, 2);
+    EXPECT_EQ(again.cols, 3);
+    EXPECT_EQ(again.blocked, map.blocked) << format.name;
+  }
+}
+
 // Every format that graphs are written in keeps all that it is given.
 TEST(MapFormats, KeepGraphs) {
   for (const EdgeKind kind : {EdgeKind::kUndirected, EdgeKind::kDirected}) {
@@ -203,7 +367,7 @@ TEST(MapFormats, KeepGraphs) {
                        .blocked = {false, true, false},
                        .labels = {"<a> & \"b\"", "Süd", "7"},
                        .prizes = {1, 0.25, 1e6},
-                       .places = {{0.1, -2}, {1e-7, 3}, {4, 5}}};
+                       .places = {.points = {{0.1, -2}, {1e-7, 3}, {4, 5}}, .unit = "m"}};
     for (const MapFormat& format : map_formats()) {
       if (format.write_graph == nullptr) continue;
       const std::string text = format.write_graph(map);
@@ -212,7 +376,8 @@ TEST(MapFormats, KeepGraphs) {
       EXPECT_EQ(again.blocked, map.blocked) << text;
       EXPECT_EQ(again.labels, map.labels) << text;
       EXPECT_EQ(again.prizes, map.prizes) << text;
-      EXPECT_EQ(again.places, map.places) << text;
+      EXPECT_EQ(again.places.points, map.places.points) << text;
+      EXPECT_EQ(again.places.unit, map.places.unit) << text;
       EXPECT_EQ(again.graph.directed(), map.graph.directed());
       ASSERT_EQ(again.graph.edges().size(), map.graph.edges().size());
       for (std::size_t i = 0; i < map.graph.edges().size(); ++i) {

@@ -117,8 +117,9 @@ def test_inspect_shows_tensors_features_and_q_values(run, trained):
 def test_maps_info_and_show(run, tmp_path):
     assert json.loads(run("graphdrl", "maps", "info", "paper:a", "--json").stdout) == {
         "map": "paper:a", "nodes": 25, "edges": 40, "directed": False, "weighted": False, "valid_nodes": 19,
-        "components": 1,
-        "connected": True,
+        "components": 1, "connected": True, "largest_component": 19,
+        "degrees": {"min": 1, "mean": 44 / 19, "max": 4}, "costs": {"min": 1, "mean": 1, "max": 1},
+        "least_budget": 20, "bounding_box": [0, 0, 4, 4], "unit": "cells", "cells": [5, 5],
     }  # fmt: skip
     process = run("graphdrl", "maps", "show", "paper:a", "--walk", "0,1,2", "--svg", tmp_path / "a.svg")
     assert process.returncode == 0
@@ -131,7 +132,7 @@ def test_maps_convert_keeps_the_map(run, tmp_path):
     """A grid through every format that holds it, and a list of edges as networkx writes it."""
     counts = {"map": "a", "nodes": 25, "edges": 40, "directed": False, "weighted": False, "valid_nodes": 19}
     source = "paper:a"
-    for ending in (".map", ".txt", ".json"):
+    for ending in (".map", ".png", ".pgm", ".txt", ".gml", ".dot", ".graphml", ".json"):
         out = tmp_path / ("a" + ending)
         assert run("graphdrl", "maps", "convert", source, "--out", out).stdout == f"Wrote {out}\n"
         assert json.loads(run("graphdrl", "maps", "info", out, "--json").stdout).items() >= counts.items()

@@ -12,6 +12,7 @@ namespace {
 struct EvaluateOptions {
   std::vector<std::string> policies = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
   std::vector<std::string> maps = {"paper"};
+  MapOptions reading;
   std::string budget;
   ComparisonOptions comparison;
   bool json = false;
@@ -50,7 +51,7 @@ void evaluate(const EvaluateOptions& options) {
   ComparisonOptions comparison = options.comparison;
   comparison.policies = options.policies;
   if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
-  const Comparison result = compare(load_worlds(options.maps), comparison);
+  const Comparison result = compare(load_worlds(options.maps, options.reading), comparison);
   if (options.json) {
     print_json(to_json(result));
   } else {
@@ -90,6 +91,7 @@ void add_evaluate_command(CLI::App& app) {
       ->excludes(episodes);
   add_seed_option(*command, options->comparison.seed, "For the starts and for random policies");
   command->add_flag("--json", options->json, "Print one JSON document");
+  add_map_options(*command, options->reading);
   add_threads_option(*command);
   command->callback([options] { evaluate(*options); });
 }

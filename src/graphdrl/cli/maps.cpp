@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
+#include <optional>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
@@ -16,13 +19,17 @@
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/map_source.h"
 #include "graphdrl/io/node_link.h"
+#include "graphdrl/planners/bound.h"
 #include "graphdrl/report/map_drawing.h"
 
 namespace graphdrl {
 namespace {
 
+constexpr double kBudgetStep = 1e-6;  // of a budget that visits all, where costs are no whole numbers
+
 struct MapsOptions {
   std::string map;
+  MapOptions reading;
   std::vector<NodeId> walk;
   std::string svg;
   bool json = false;
@@ -30,6 +37,7 @@ struct MapsOptions {
 
 struct ConvertOptions {
   std::string map;
+  MapOptions reading;
   std::string out;
 };
 
@@ -41,34 +49,113 @@ struct GenerateOptions {
   std::string out;
 };
 
+// The least budget with which some walk may visit every node: no walk does with less. Empty where none does at all.
+// The bound [planners/bound.h] turned round.
+std::optional<double> least_budget(const World& world) {
+  const NodeId given = world.given().start;
+  const NodeId start = given == kNoNode ? world.valid_nodes().front() : given;
+  const auto may_visit_all = [&](double budget) {
+    return max_prize({.view = world, .start = start, .budget = budget}) >= world.total_prize() * (1 - kPrizeRounding);
+  };
+  const Graph& open = world.open();
+  double high = 2.0 * world.valid_count() * open.max_cost();  // a tour along a spanning tree
+  if (open.directed()) high *= world.valid_count();
+  if (high == 0) return 0;
+  if (!may_visit_all(high)) return std::nullopt;
+  // In steps: of 1 where costs are whole numbers.
+  const double step = open.integer_costs() ? 1 : kBudgetStep * high;
+  std::int64_t too_few = -1;
+  auto enough = static_cast<std::int64_t>(std::ceil(high / step));
+  while (enough - too_few > 1) {
+    const std::int64_t middle = std::midpoint(too_few, enough);
+    (may_visit_all(static_cast<double>(middle) * step) ? enough : too_few) = middle;
+  }
+  return static_cast<double>(enough) * step;
+}
+
+Json describe(const World& world) {
+  const Graph& open = world.open();
+  const Components components = find_components(open, world.blocked());
+  int least_degree = std::numeric_limits<int>::max();
+  int most_degree = 0;
+  for (const NodeId node : world.valid_nodes()) {
+    least_degree = std::min(least_degree, open.degree(node));
+    most_degree = std::max(most_degree, open.degree(node));
+  }
+  const double arcs = static_cast<double>(open.edge_count()) * (open.directed() ? 1 : 2);
+  Json json = {{"map", world.name()},
+               {"nodes", world.graph().node_count()},
+               {"edges", world.graph().edge_count()},
+               {"directed", world.graph().directed()},
+               {"weighted", world.graph().weighted()},
+               {"valid_nodes", world.valid_count()},
+               {"components", components.count()},
+               {"connected", components.count() == 1},
+               {"largest_component", components.sizes[components.largest()]},
+               {"degrees", {{"min", least_degree}, {"mean", arcs / world.valid_count()}, {"max", most_degree}}},
+               {"costs", {{"min", open.min_cost()}, {"mean", open.mean_cost()}, {"max", open.max_cost()}}},
+               {"least_budget", or_null(components.count() == 1 ? least_budget(world) : std::nullopt)},
+               {"bounding_box", nullptr},
+               {"unit", world.has_places() ? Json(world.unit()) : Json()}};
+  if (world.has_cells()) json["cells"] = {world.map()->rows, world.map()->cols};
+  if (world.has_places()) {
+    double left = kNoLimit, bottom = kNoLimit, right = -kNoLimit, top = -kNoLimit;
+    for (NodeId node = 0; node < world.node_count(); ++node) {
+      const Point at = world.place(node);
+      left = std::min(left, at.x);
+      right = std::max(right, at.x);
+      bottom = std::min(bottom, at.y);
+      top = std::max(top, at.y);
+    }
+    json["bounding_box"] = {left, bottom, right, top};
+  }
+  return json;
+}
+
+std::string describe_in_words(const Json& map) {
+  const auto number = [](const Json& json) { return fmt::format("{:.6g}", json.get<double>()); };
+  const int components = map["components"].get<int>();
+  std::string text = fmt::format(
+      "{}: {} nodes, {}{}{} edges, {} valid nodes in {} connected component{}\n",
+      escaped(map["map"].get<std::string>()), map["nodes"].get<int>(), map["directed"].get<bool>() ? "directed " : "",
+      map["weighted"].get<bool>() ? "weighted " : "", map["edges"].get<std::int64_t>(), map["valid_nodes"].get<int>(),
+      components, components == 1 ? "" : fmt::format("s, the largest of {}", map["largest_component"].get<int>()));
+  if (map.contains("cells"))
+    text += fmt::format("  cells    {} rows, {} columns\n", map["cells"][0].get<int>(), map["cells"][1].get<int>());
+  const Json& degrees = map["degrees"];
+  text += fmt::format("  degrees  {} to {}, {:.3g} in the mean\n", degrees["min"].get<int>(), degrees["max"].get<int>(),
+                      degrees["mean"].get<double>());
+  if (map["weighted"].get<bool>()) {
+    const Json& costs = map["costs"];
+    text += fmt::format("  costs    {} to {}, {} in the mean\n", number(costs["min"]), number(costs["max"]),
+                        number(costs["mean"]));
+  }
+  if (!map["least_budget"].is_null()) {
+    text += fmt::format("  budget   no walk visits every node for less than {}\n", number(map["least_budget"]));
+  }
+  if (!map["bounding_box"].is_null()) {
+    const Json& box = map["bounding_box"];
+    const std::string unit = map["unit"].get<std::string>();
+    text += fmt::format("  lies     x from {} to {}, y from {} to {}{}{}\n", number(box[0]), number(box[2]),
+                        number(box[1]), number(box[3]), unit.empty() ? "" : " ", escaped(unit));
+  }
+  return text;
+}
+
 void show_info(const MapsOptions& options) {
   Json maps = Json::array();
-  for (const World& world : load_worlds({options.map})) {
-    const int components = count_components(world.graph(), world.blocked());
-    maps.push_back({{"map", world.name()},
-                    {"nodes", world.graph().node_count()},
-                    {"edges", world.graph().edge_count()},
-                    {"directed", world.graph().directed()},
-                    {"weighted", world.graph().weighted()},
-                    {"valid_nodes", world.valid_count()},
-                    {"components", components},
-                    {"connected", components == 1}});
-  }
+  for (const World& world : load_worlds({options.map}, options.reading)) maps.push_back(describe(world));
   if (options.json) {
     print_json(maps.size() == 1 ? maps[0] : maps);
     return;
   }
-  for (const Json& map : maps) {
-    print_text(fmt::format(
-        "{}: {} nodes, {}{}{} edges, {} valid nodes in {} connected component{}\n", map["map"].get<std::string>(),
-        map["nodes"].get<int>(), map["directed"].get<bool>() ? "directed " : "",
-        map["weighted"].get<bool>() ? "weighted " : "", map["edges"].get<int>(), map["valid_nodes"].get<int>(),
-        map["components"].get<int>(), map["connected"].get<bool>() ? "" : "s"));
-  }
+  std::string text;
+  for (const Json& map : maps) text += describe_in_words(map);
+  print_text(text);
 }
 
 void show_map(const MapsOptions& options) {
-  const std::vector<World> worlds = load_worlds({options.map});
+  const std::vector<World> worlds = load_worlds({options.map}, options.reading);
   if (worlds.size() > 1 && (!options.walk.empty() || !options.svg.empty())) {
     throw Error({.what = "a walk or a picture needs one map",
                  .expected = "one map",
@@ -91,31 +178,8 @@ void show_map(const MapsOptions& options) {
   print_text(text);
 }
 
-// The map in the format that the file's ending names.
-std::string format_map(const AnyMap& map, const std::string& file) {
-  const std::string ending = std::filesystem::path(file).extension().string();
-  const auto formats = map_formats();
-  const auto can_write = [](const MapFormat& one) { return one.write_grid != nullptr || one.write_graph != nullptr; };
-  const auto format = std::find_if(formats.begin(), formats.end(),
-                                   [&](const MapFormat& one) { return one.ending == ending && can_write(one); });
-  if (format == formats.end()) {
-    std::string endings;
-    for (const MapFormat& one : formats) {
-      if (can_write(one)) endings += fmt::format("{}{}", endings.empty() ? "" : ", ", one.ending);
-    }
-    throw Error({.what = "no format with this ending can be written", .expected = endings, .where = file});
-  }
-  const auto* const grid = std::get_if<GridMap>(&map);
-  if (grid != nullptr && format->write_grid != nullptr) return format->write_grid(*grid);
-  if (format->write_graph == nullptr) {
-    throw Error({.what = "this format holds grids only", .expected = "another ending", .where = file});
-  }
-  if (grid == nullptr) return format->write_graph(std::get<GraphMap>(map));
-  return format->write_graph({.graph = Graph::grid(grid->rows, grid->cols), .blocked = grid->blocked, .labels = {}});
-}
-
 void convert_map(const ConvertOptions& options) {
-  const NamedMap named = load_map(options.map);
+  const NamedMap named = load_map(options.map, options.reading);
   write_file(options.out, format_map(named.map, options.out));
   const auto* const graph = std::get_if<GraphMap>(&named.map);
   const bool given = graph != nullptr && (graph->task.budget || graph->task.start != kNoNode);
@@ -183,6 +247,7 @@ void add_maps_command(CLI::App& app) {
     command->add_option("map", options->map, "paper, paper:a to paper:j, a file, or a folder")
         ->required()
         ->type_name("MAP");
+    add_map_options(*command, options->reading);
     return command;
   };
   CLI::App* const info = add("info", "Count nodes, edges and connected components");
@@ -204,6 +269,7 @@ void add_maps_command(CLI::App& app) {
       ->required()
       ->check(not_empty())
       ->type_name("FILE");
+  add_map_options(*convert, converting->reading);
   convert->footer(describe_formats());
   convert->callback([converting] { convert_map(*converting); });
 

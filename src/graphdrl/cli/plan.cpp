@@ -31,6 +31,7 @@ constexpr double kRounding = 1e-9;  // of sums of prizes
 
 struct PlanOptions {
   std::string map;
+  MapOptions reading;
   std::string budget;
   std::string start;
   std::string end;
@@ -122,7 +123,7 @@ Answer make_plan(const World& world, const Task& task, const PlanOptions& option
 
 std::string name_of(const World& world, NodeId node) {
   if (!world.labels().empty()) return fmt::format("{} (node {})", escaped(world.labels()[node]), node);
-  if (!world.is_grid()) return fmt::format("node {}", node);
+  if (!world.has_cells()) return fmt::format("node {}", node);
   const Cell cell = world.map()->cell(node);
   return fmt::format("node {} (row {}, column {})", node, cell.row, cell.col);
 }
@@ -136,7 +137,7 @@ Json to_json(const World& world, const Task& task, const PlanOptions& options, c
   json["end"] = task.ends_anywhere() ? Json() : Json(task.end);
   json["budget"] = task.budget;
   json["walk"] = plan.walk;
-  if (world.is_grid()) {
+  if (world.has_cells()) {
     json["walk_cells"] = Json::array();
     for (const NodeId node : plan.walk) {
       const Cell cell = world.map()->cell(node);
@@ -196,7 +197,7 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
     names.push_back(world.labels().empty() ? std::to_string(node) : escaped(world.labels()[node]));
   }
   text += fmt::format("walk     {}\n", fmt::join(names, " "));
-  if (world.is_grid()) text += "\n" + draw_map_text(world, plan.walk);
+  if (world.has_cells()) text += "\n" + draw_map_text(world, plan.walk);
   return text;
 }
 
@@ -246,7 +247,7 @@ void plan(PlanOptions options) {
                  .got = fmt::format("{}", *options.time_limit_s),
                  .where = "--time-limit"});
   }
-  const World world = load_one_world(options.map);
+  const World world = load_one_world(options.map, options.reading);
   const Task task = task_of(world, options);
   stop_planning_on_signals();
   const Answer answer = make_plan(world, task, options);
@@ -265,8 +266,7 @@ void add_plan_command(CLI::App& app) {
       app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
   command
-      ->add_option("map", options->map,
-                   "paper:a to paper:j, or a file: an ASCII map, a graph as node-link JSON, or a problem of OPLib")
+      ->add_option("map", options->map, "paper:a to paper:j, or a file in any format of `graphdrl maps convert --help`")
       ->required()
       ->type_name("MAP");
   command
@@ -300,6 +300,7 @@ void add_plan_command(CLI::App& app) {
       ->type_name("S");
   add_seed_option(*command, options->seed, "For search and for random policies");
   command->add_flag("--json", options->json, "Print one JSON document");
+  add_map_options(*command, options->reading);
   add_threads_option(*command);
   command->callback([options] { plan(*options); });
 }

@@ -97,6 +97,53 @@ void add_threads_option(CLI::App& command) {
       ->type_name("N");
 }
 
+void add_map_options(CLI::App& command, MapOptions& options) {
+  options.note = [](const std::string& note) { print_diagnostic(escaped(note) + "\n"); };
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, help)->group("Options for maps");
+  };
+  const auto positive = [](const std::string& text) {
+    double value = 0;
+    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool good = error == std::errc() && rest == text.data() + text.size() && value > 0 && value < 1e9;
+    return good ? std::string() : fmt::format("expected a number above 0, got {}", in_quotes(text));
+  };
+  add("--cost-attribute", options.cost_attribute,
+      "Of graphs: the edges' attribute that is their cost (default: weight, cost, length or distance)")
+      ->check(not_empty())
+      ->type_name("NAME");
+  command
+      .add_option_function<std::string>(
+          "--connectivity", [&options](const std::string& count) { options.diagonals = count == "8"; },
+          "Of grids: neighbours of a cell, 4 or 8; a diagonal step costs the square root of 2 (default: 4)")
+      ->check(CLI::IsMember({"4", "8"}))
+      ->type_name("N")
+      ->group("Options for maps");
+  command
+      .add_flag("--cut-corners", options.cut_corners, "With --connectivity 8: diagonal steps may pass blocked cells")
+      ->needs("--connectivity")
+      ->group("Options for maps");
+  add("--robot-radius", options.robot_radius,
+      "Of grids: obstacles grow by this, in the map's unit, or in cells where it has none")
+      ->check(CLI::Validator(positive, ""))
+      ->type_name("R");
+  add("--cell-size", options.cell_size,
+      "Of grids that say how large their cells are: larger cells, free where all they cover is; a side, in the unit")
+      ->check(CLI::Validator(positive, ""))
+      ->type_name("S");
+  add("--cell-pixels", options.cell_pixels, "Of pictures: pixels a side of a cell")
+      ->check(CLI::Range(1, 10'000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--unknown", [&options](const std::string& what) { options.unknown_is_free = what == "free"; },
+          "Of ROS maps: what unknown cells are, blocked or free (default: blocked)")
+      ->check(CLI::IsMember({"blocked", "free"}))
+      ->type_name("WHAT")
+      ->group("Options for maps");
+}
+
 CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
   return command.add_option("--seed", seed, help)->check(whole_number())->capture_default_str();
 }

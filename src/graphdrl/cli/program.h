@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "graphdrl/io/map_options.h"
+
 namespace graphdrl {
 
 using Json = nlohmann::ordered_json;
@@ -20,6 +22,9 @@ int run_program(CLI::App& app, int argc, char** argv);
 
 // Adds --threads and has parallel_for use that many; the default is one per processor.
 void add_threads_option(CLI::App& command);
+
+// Adds the options that say how maps are read; notes go to standard error.
+void add_map_options(CLI::App& command, MapOptions& options);
 
 // Adds --seed, a whole number from 0 to 2^64 - 1; `help` says what it is for.
 CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help);

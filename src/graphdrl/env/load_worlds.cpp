@@ -22,7 +22,7 @@ World make_world(NamedMap&& named) {
   if (auto* const grid = std::get_if<GridMap>(&named.map)) return World(std::move(named.name), std::move(*grid));
   auto& map = std::get<GraphMap>(named.map);
   return World(std::move(named.name), std::move(map.graph), std::move(map.blocked), std::move(map.labels),
-               std::move(map.prizes), map.task);
+               std::move(map.prizes), map.task, std::move(map.places));
 }
 
 // kNoNode where the text names no node.
@@ -32,23 +32,23 @@ NodeId find_node(const World& world, std::string_view text) {
   if (text.starts_with('#')) return parse_index(text.substr(1));
   if (!world.labels().empty()) return kNoNode;
   const std::size_t comma = text.find(',');
-  if (comma == std::string_view::npos || !world.is_grid()) return parse_index(text);
+  if (comma == std::string_view::npos || !world.has_cells()) return parse_index(text);
   const Cell cell{parse_index(text.substr(0, comma)), parse_index(text.substr(comma + 1))};
   return world.map()->contains(cell) ? world.map()->node(cell) : kNoNode;
 }
 
 }  // namespace
 
-std::vector<World> load_worlds(const std::vector<std::string>& sources) {
+std::vector<World> load_worlds(const std::vector<std::string>& sources, const MapOptions& options) {
   std::vector<World> worlds;
   for (const std::string& source : sources) {
-    for (NamedMap& named : load_maps(source)) worlds.push_back(make_world(std::move(named)));
+    for (NamedMap& named : load_maps(source, options)) worlds.push_back(make_world(std::move(named)));
   }
   return worlds;
 }
 
-World load_one_world(const std::string& source) {
-  return make_world(load_map(source));
+World load_one_world(const std::string& source, const MapOptions& options) {
+  return make_world(load_map(source, options));
 }
 
 NodeId parse_node(const World& world, std::string_view text, std::string_view role) {
@@ -56,7 +56,7 @@ NodeId parse_node(const World& world, std::string_view text, std::string_view ro
   const bool there = node >= 0 && node < world.graph().node_count();
   if (there && !world.is_blocked(node)) return node;
   std::string expected = "a valid node's id";
-  if (world.is_grid()) expected += " or row,col";
+  if (world.has_cells()) expected += " or row,col";
   if (!world.labels().empty()) expected = "a label of the map, or #N for node id N";
   throw Error({.what = fmt::format("{} {}", role, there ? "on an obstacle" : "outside the map"),
                .expected = expected,

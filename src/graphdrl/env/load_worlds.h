@@ -6,14 +6,15 @@
 #include <vector>
 
 #include "graphdrl/env/task.h"
+#include "graphdrl/io/map_options.h"
 
 namespace graphdrl {
 
 // Every map of every source, as load_maps takes them. Throws Error.
-std::vector<World> load_worlds(const std::vector<std::string>& sources);
+std::vector<World> load_worlds(const std::vector<std::string>& sources, const MapOptions& options = {});
 
 // The one map of a source. Throws Error where it holds more.
-World load_one_world(const std::string& source);
+World load_one_world(const std::string& source, const MapOptions& options = {});
 
 // A node as users name it: its label, "#5" for the node id 5, and in a world without labels also "5", or "row,col" on a
 // grid. A number is no node id in a world with labels, where it could be either. Throws Error, with the node's role

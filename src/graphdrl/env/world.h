@@ -19,21 +19,23 @@ namespace graphdrl {
 // one. It is its own index: what searches need to know of the whole graph (edges turned round, costs) is made once.
 class World {
  public:
-  // A grid: has directions and cells. Throws Error where every cell is blocked.
+  // A grid: has cells, and directions where it has no diagonals. Throws Error where every cell is blocked.
   World(std::string name, GridMap map);
 
   // Any graph. Prizes are what a first visit of a node is worth; 1 each where there are none. Throws Error where every
-  // node is blocked. REQUIRES: blocked has a value per node, and so have labels and prizes where there are any; prizes
-  // are finite and not negative.
+  // node is blocked. REQUIRES: blocked has a value per node, and so have labels, prizes and places where there are any;
+  // prizes are finite and not negative.
   World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels = {},
-        std::vector<double> prizes = {}, GivenTask given = {});
+        std::vector<double> prizes = {}, GivenTask given = {}, Places places = {});
 
   const std::string& name() const { return data_->name; }
   NodeId node_count() const { return data_->open.node_count(); }
   const std::optional<GridMap>& map() const { return data_->map; }
   const std::vector<bool>& blocked() const { return data_->blocked; }
   bool is_blocked(NodeId node) const { return data_->blocked[node]; }
-  bool is_grid() const { return data_->map.has_value(); }
+  // A grid whose steps lead in the paper's four directions.
+  bool is_grid() const { return data_->map && !data_->map->diagonals; }
+  bool has_cells() const { return data_->map.has_value(); }                 // whose steps may lead to eight
   const std::vector<std::string>& labels() const { return data_->labels; }  // what users call the nodes; mostly empty
 
   std::span<const NodeId> valid_nodes() const { return data_->valid_nodes; }  // ascending
@@ -44,6 +46,11 @@ class World {
   const std::vector<double>& prizes() const { return data_->prizes; }
   double total_prize() const { return data_->total_prize; }  // of the valid nodes
   double percent_of_all(double prize) const { return total_prize() > 0 ? 100.0 * prize / total_prize() : 100.0; }
+
+  // Where nodes lie, if that is known: cells do [GridMap::place], other nodes where the file says so.
+  bool has_places() const { return has_cells() || !data_->places.points.empty(); }
+  Point place(NodeId node) const;   // REQUIRES: has_places()
+  const std::string& unit() const;  // of places: "m", "degrees", "cells"; empty where it is not known
 
   // What the file says of the walk asked for.
   const GivenTask& given() const { return data_->given; }
@@ -80,6 +87,7 @@ class World {
     std::vector<double> prizes;  // [N]; empty where each is 1
     double total_prize = 0;
     GivenTask given;
+    Places places;
     bool exact_sums = true;
     std::vector<NodeId> valid_nodes;
     std::vector<std::array<NodeId, 4>> direction_targets;  // [N], of grids

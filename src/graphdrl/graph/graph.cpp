@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "graphdrl/base/error.h"
@@ -15,6 +16,11 @@ namespace {
 
 // Below this a double holds every whole number.
 constexpr double kExactIntegers = 0x1p53;
+
+// Steps to the left and up, to the right and up, to the right and down, to the left and down.
+constexpr std::array<Cell, 4> kDiagonalSteps = {{{-1, -1}, {-1, 1}, {1, 1}, {1, -1}}};
+constexpr std::span<const Cell> kDiagonals = kDiagonalSteps;
+constexpr std::size_t kMostGridNeighbours = kAllDirections.size() + kDiagonalSteps.size();
 
 // Throws Error on an edge out of range and on a bad cost.
 void check_edges(NodeId node_count, std::span<const Edge> edges) {
@@ -112,16 +118,31 @@ Graph Graph::grid(int rows, int cols) {
   return graph;
 }
 
-Graph Graph::grid(int rows, int cols, const std::vector<bool>& blocked) {
+Graph Graph::grid(const GridMap& map) {
   Graph graph;
-  graph.offsets_.reserve(blocked.size() + 1);
-  for (NodeId node = 0; node < rows * cols; ++node) {
-    for (const Direction direction : kAllDirections) {
-      const NodeId next = blocked[node] ? kNoNode : grid_neighbour(rows, cols, node, direction);
-      if (next != kNoNode && !blocked[next]) graph.neighbours_.push_back(next);
+  graph.offsets_.reserve(map.blocked.size() + 1);
+  const auto free = [&](const Cell& cell) { return map.contains(cell) && !map.blocked[map.node(cell)]; };
+  const auto add = [&](NodeId node, double cost) {
+    graph.neighbours_.push_back(node);
+    if (map.diagonals) graph.costs_.push_back(cost);
+  };
+  for (NodeId node = 0; node < map.rows * map.cols; ++node) {
+    if (!map.blocked[node]) {
+      for (const Direction direction : kAllDirections) {
+        const NodeId next = grid_neighbour(map.rows, map.cols, node, direction);
+        if (next != kNoNode && !map.blocked[next]) add(next, 1);
+      }
+      const Cell at = map.cell(node);
+      for (const Cell step : map.diagonals ? kDiagonals : std::span<const Cell>()) {
+        const Cell to{at.row + step.row, at.col + step.col};
+        if (!free(to)) continue;
+        if (!map.cut_corners && !(free({at.row, to.col}) && free({to.row, at.col}))) continue;
+        add(map.node(to), std::numbers::sqrt2);
+      }
     }
     graph.close_node();
   }
+  graph.settle_costs();
   return graph;
 }
 
@@ -162,8 +183,8 @@ int Graph::index_of(NodeId node, NodeId next) const {
   }
   const auto all = neighbours(node);
   // Lists longer than a grid's are in ascending order.
-  const auto place = all.size() > kAllDirections.size() ? std::lower_bound(all.begin(), all.end(), next)
-                                                        : std::find(all.begin(), all.end(), next);
+  const auto place = all.size() > kMostGridNeighbours ? std::lower_bound(all.begin(), all.end(), next)
+                                                      : std::find(all.begin(), all.end(), next);
   return place == all.end() || *place != next ? -1 : static_cast<int>(place - all.begin());
 }
 

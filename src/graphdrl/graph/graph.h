@@ -11,6 +11,8 @@
 
 namespace graphdrl {
 
+struct GridMap;
+
 inline constexpr NodeId kNoNode = -1;
 
 // Undirected, or from a to b in a directed graph.
@@ -36,8 +38,8 @@ class Graph {
   // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down; every edge costs 1.
   // REQUIRES: rows * cols fits a NodeId.
   static Graph grid(int rows, int cols);
-  // The same without the edges of blocked cells. REQUIRES: blocked has a value per cell.
-  static Graph grid(int rows, int cols, const std::vector<bool>& blocked);
+  // The edges between free cells of a map. Where it has diagonals, these neighbours follow, clockwise from left-up.
+  static Graph grid(const GridMap& map);
 
   // An edge between any two nodes, undirected. Lists of neighbours are in ascending order from the node on, and begin
   // again after the last one. Memory: O(nodes), and what the costs need. Cost: a look at every pair. Where costs are
@@ -81,7 +83,7 @@ class Graph {
     return costs_.empty() ? 1.0 : costs_[offsets_[node] + index];
   }
 
-  // The place of `next` in neighbours(node), or -1. Cost: O(log degree), or O(4) on a grid.
+  // The place of `next` in neighbours(node), or -1. Cost: O(log degree), or O(8) on a grid.
   int index_of(NodeId node, NodeId next) const;
 
   // What edges cost; 1 where there are none. Known since the graph was made. The mean is 1 where all cost 0.

@@ -1,5 +1,8 @@
-// Where a node lies.
+// Where nodes lie.
 #pragma once
+
+#include <string>
+#include <vector>
 
 namespace graphdrl {
 
@@ -7,6 +10,12 @@ struct Point {
   double x;
   double y;
   friend bool operator==(const Point&, const Point&) = default;
+};
+
+// Of the nodes of a graph, y upward.
+struct Places {
+  std::vector<Point> points;  // [N]; empty where nobody says
+  std::string unit;           // "m"; "degrees" of longitude and latitude; empty where nobody says
 };
 
 }  // namespace graphdrl

@@ -5,18 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
 
 constexpr int kMostWords = 4;
-// No file claims more memory than it fills: most of its nodes have edges.
-constexpr std::size_t kSpareNodes = 1000;
-constexpr std::size_t kMostNodeIds = std::numeric_limits<NodeId>::max();
 
 // The words of a line, and how many there are: at most one more than a line may have.
 struct Words {
@@ -40,9 +37,7 @@ bool is_dimacs_comment(const Words& words) {
 class DimacsReader {
  public:
   DimacsReader(std::string_view text, const std::string& source)
-      : lines_(text),
-        most_nodes_(static_cast<double>(std::min(text.size() + kSpareNodes, kMostNodeIds))),
-        source_(source) {}
+      : lines_(text), most_nodes_(static_cast<double>(most_nodes_of(text))), source_(source) {}
 
   GraphMap read() {
     while (lines_.next()) {

@@ -76,10 +76,10 @@ int column_of(const std::vector<std::string>& fields, std::span<const std::strin
   return kNone;
 }
 
-// What a dictionary of Python has under one of the names of costs; 1 where it has none.
-std::string_view cost_in_dictionary(std::string_view text) {
+// What a dictionary of Python has under the first of these names that it has; empty where it has none.
+std::string_view value_in_dictionary(std::string_view text, std::span<const std::string_view> names) {
   if (!text.ends_with('}')) return text;
-  for (const std::string_view name : cost_names()) {
+  for (const std::string_view name : names) {
     for (const char quote : {'\'', '"'}) {
       const std::string key = fmt::format("{}{}{}:", quote, name, quote);
       const std::size_t at = text.find(key);
@@ -88,13 +88,18 @@ std::string_view cost_in_dictionary(std::string_view text) {
       return rest.substr(0, rest.find_first_of(",}"));
     }
   }
-  return "1";
+  return {};
 }
 
 class EdgeListReader {
  public:
-  EdgeListReader(std::string_view text, const std::string& source)
-      : lines_(text), source_(source), builder_([this] { return place(); }) {}
+  EdgeListReader(std::string_view text, const std::string& source, const MapOptions& options)
+      : lines_(text), source_(source), builder_(options, [this] { return place(); }) {
+    if (options.cost_attribute.empty()) return;
+    cost_names_ = {options.cost_attribute};
+    cost_name_ = options.cost_attribute;
+    cost_ = kNone;
+  }
 
   GraphMap read() {
     bool first = true;
@@ -119,7 +124,7 @@ class EdgeListReader {
     if (from == kNone || to == kNone) return false;
     from_ = from;
     to_ = to;
-    cost_ = column_of(fields, cost_names());
+    cost_ = column_of(fields, cost_names_);
     return true;
   }
 
@@ -134,9 +139,9 @@ class EdgeListReader {
     const NodeId from = builder_.node_or_new(fields[from_]);
     builder_.add_edge(from, builder_.node_or_new(fields[to_]), /*one_way=*/false);
     any_ = true;
-    if (cost_ == kNone || cost_ >= count) return;
-    const std::string& field = fields[cost_];
-    builder_.set_edge("cost", field.starts_with('{') ? cost_in_dictionary(field) : field);
+    std::string_view cost = cost_ != kNone && cost_ < count ? std::string_view(fields[cost_]) : std::string_view();
+    if (fields.back().starts_with('{')) cost = value_in_dictionary(fields.back(), cost_names_);
+    if (!cost.empty()) builder_.set_edge(cost_name_, cost);
   }
 
   Lines lines_;
@@ -145,6 +150,8 @@ class EdgeListReader {
   int from_ = 0;
   int to_ = 1;
   int cost_ = 2;
+  std::string_view cost_name_ = "cost";
+  std::vector<std::string_view> cost_names_ = {cost_names().begin(), cost_names().end()};
   bool any_ = false;  // edge
   GraphBuilder builder_;
 };
@@ -163,8 +170,8 @@ bool is_edge_list(std::string_view text) {
   return false;
 }
 
-GraphMap parse_edge_list(std::string_view text, const std::string& source) {
-  return EdgeListReader(text, source).read();
+GraphMap parse_edge_list(std::string_view text, const std::string& source, const MapOptions& options) {
+  return EdgeListReader(text, source, options).read();
 }
 
 }  // namespace graphdrl

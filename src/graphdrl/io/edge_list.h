@@ -18,6 +18,6 @@ bool is_edge_list(std::string_view text);
 // is the third field; it may be a Python dictionary, as networkx writes it: {'weight': 2.5}. Other columns are skipped.
 // Edges lead both ways. Node ids are any texts; nodes are numbered as they come. Throws Error, naming `source` and the
 // line, on anything else.
-GraphMap parse_edge_list(std::string_view text, const std::string& source);
+GraphMap parse_edge_list(std::string_view text, const std::string& source, const MapOptions& options = {});
 
 }  // namespace graphdrl

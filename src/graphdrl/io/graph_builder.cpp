@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <unordered_set>
 
 #include "graphdrl/base/error.h"
@@ -18,8 +19,17 @@ constexpr std::array<std::string_view, 2> kLabelNames = {"label", "name"};
 constexpr std::array<std::string_view, 3> kXNames = {"x", "lon", "longitude"};
 constexpr std::array<std::string_view, 3> kYNames = {"y", "lat", "latitude"};
 
+constexpr std::size_t kNamesShown = 8;  // of attributes, in an error's message
+
 char lower(char c) {
   return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+}
+
+// The place of a name among names; behind the last where it is none of them.
+int rank_of(std::string_view name, std::span<const std::string_view> names) {
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](std::string_view one) { return same_name(name, one); });
+  return static_cast<int>(found - names.begin());
 }
 
 }  // namespace
@@ -32,13 +42,39 @@ std::span<const std::string_view> prize_names() {
   return kPrizeNames;
 }
 
+std::span<const std::string_view> label_names() {
+  return kLabelNames;
+}
+
+std::span<const std::string_view> x_names() {
+  return kXNames;
+}
+
+std::span<const std::string_view> y_names() {
+  return kYNames;
+}
+
+std::int64_t most_nodes_of(std::string_view text) {
+  constexpr std::int64_t kWithoutEdges = 1000;
+  return std::min<std::int64_t>(std::ssize(text) + kWithoutEdges, std::numeric_limits<NodeId>::max());
+}
+
+std::vector<std::string> labels_if_unique(std::vector<std::string> labels, NodeId count) {
+  std::unordered_set<std::string_view> different;
+  for (const std::string& label : labels) {
+    if (!label.empty()) different.insert(label);
+  }
+  if (std::ssize(different) != count) labels.clear();
+  return labels;
+}
+
 bool same_name(std::string_view one, std::string_view other) {
   return std::equal(one.begin(), one.end(), other.begin(), other.end(),
                     [](char a, char b) { return lower(a) == lower(b); });
 }
 
 bool is_name_of(std::string_view name, std::span<const std::string_view> names) {
-  return std::any_of(names.begin(), names.end(), [&](std::string_view one) { return same_name(name, one); });
+  return rank_of(name, names) < std::ssize(names);
 }
 
 NodeId GraphBuilder::add_node(std::string_view id) {
@@ -62,7 +98,7 @@ NodeId GraphBuilder::node_or_new(std::string_view id) {
 }
 
 void GraphBuilder::add_edge(NodeId from, NodeId to, bool one_way) {
-  links_.push_back({{from, to, 1}, one_way});
+  links_.push_back({{from, to, 1}, one_way, static_cast<int>(kCostNames.size())});
   directed_ = directed_ || one_way;
 }
 
@@ -87,6 +123,7 @@ void GraphBuilder::set_node(NodeId node, std::string_view name, std::string_view
     if (attributes.label.empty() || same_name(name, kLabelNames.front())) attributes.label = value;
   } else if (is_name_of(name, kXNames)) {
     attributes.x = number(name, value, /*may_be_negative=*/true);
+    attributes.degrees = !same_name(name, kXNames.front());
   } else if (is_name_of(name, kYNames)) {
     attributes.y = number(name, value, /*may_be_negative=*/true);
   } else {
@@ -99,22 +136,51 @@ void GraphBuilder::set_node(NodeId node, std::string_view name, std::string_view
 }
 
 void GraphBuilder::set_edge(std::string_view name, std::string_view value) {
-  if (is_name_of(name, kCostNames)) links_.back().edge.cost = number(name, value, /*may_be_negative=*/false);
+  Link& link = links_.back();
+  if (!cost_attribute_.empty()) {
+    if (same_name(name, cost_attribute_)) {
+      link.edge.cost = number(name, value, /*may_be_negative=*/false);
+      cost_attribute_met_ = true;
+    } else if (edge_attributes_.size() < kNamesShown) {
+      const std::string met(name);
+      if (std::find(edge_attributes_.begin(), edge_attributes_.end(), met) == edge_attributes_.end()) {
+        edge_attributes_.push_back(met);
+      }
+    }
+    return;
+  }
+  const int rank = rank_of(name, kCostNames);
+  if (rank >= link.cost_rank) return;
+  link.edge.cost = number(name, value, /*may_be_negative=*/false);
+  link.cost_rank = rank;
+}
+
+void GraphBuilder::check_cost_attribute() const {
+  if (cost_attribute_.empty() || cost_attribute_met_) return;
+  std::string names;
+  for (const std::string& name : edge_attributes_) names += (names.empty() ? "" : ", ") + escaped(name);
+  throw Error({.what = "no edge has this attribute",
+               .expected = names.empty() ? "edges with attributes" : names,
+               .got = in_quotes(cost_attribute_),
+               .where = place_()});
 }
 
 std::vector<std::string> GraphBuilder::take_labels() {
-  std::unordered_set<std::string_view> different;
-  for (const Attributes& node : nodes_) {
-    if (!node.label.empty()) different.insert(node.label);
-  }
-  if (std::ssize(different) != ids_.count()) return ids_.take_labels();
   std::vector<std::string> labels;
-  labels.reserve(nodes_.size());
   for (Attributes& node : nodes_) labels.push_back(std::move(node.label));
-  return labels;
+  labels = labels_if_unique(std::move(labels), ids_.count());
+  return labels.empty() ? ids_.take_labels() : labels;
+}
+
+void GraphBuilder::take_places(GraphMap& map) const {
+  const auto has_place = [](const Attributes& node) { return node.x && node.y; };
+  if (!std::all_of(nodes_.begin(), nodes_.end(), has_place)) return;
+  for (const Attributes& node : nodes_) map.places.points.push_back({*node.x, *node.y});
+  if (!nodes_.empty() && nodes_.front().degrees) map.places.unit = "degrees";
 }
 
 GraphMap GraphBuilder::build() {
+  check_cost_attribute();
   const NodeId count = ids_.count();
   nodes_.resize(count);
   std::vector<Edge> edges;
@@ -126,19 +192,17 @@ GraphMap GraphBuilder::build() {
   GraphMap map;
   map.graph = Graph::from_edges(count, edges, directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
   bool prizes = false;
-  bool places = count > 0;
   for (const Attributes& node : nodes_) {
     map.blocked.push_back(node.blocked);
     prizes = prizes || node.prize != 1;
-    places = places && node.x && node.y;
   }
   for (const Attributes& node : nodes_) {
     if (prizes) map.prizes.push_back(node.prize);
-    if (places) map.places.push_back({*node.x, *node.y});
   }
   if (std::find(map.blocked.begin(), map.blocked.end(), false) == map.blocked.end()) {
     throw Error({.what = "the graph has no free node", .where = place_()});
   }
+  take_places(map);
   map.labels = take_labels();
   return map;
 }

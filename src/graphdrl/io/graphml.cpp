@@ -15,8 +15,8 @@ namespace {
 
 class GraphMlReader {
  public:
-  GraphMlReader(std::string_view text, const std::string& source)
-      : text_(text), source_(source), builder_([this] { return place(); }) {}
+  GraphMlReader(std::string_view text, const std::string& source, const MapOptions& options)
+      : text_(text), source_(source), builder_(options, [this] { return place(); }) {}
 
   GraphMap read() {
     pugi::xml_document document;
@@ -37,7 +37,12 @@ class GraphMlReader {
     at_ = graph.child("hyperedge");
     if (at_) fail("an edge between more than two nodes", "edges between two nodes");
     at_ = graph;
-    return builder_.build();
+    GraphMap map = builder_.build();
+    for (const pugi::xml_node data : graph.children("data")) {
+      const auto key = graph_keys_.find(data.attribute("key").value());
+      if (key != graph_keys_.end() && key->second.name == "unit") map.places.unit = data.text().get();
+    }
+    return map;
   }
 
  private:
@@ -65,8 +70,10 @@ class GraphMlReader {
                       .fallback = fallback.text().get(),
                       .has_fallback = static_cast<bool>(fallback)};
       const std::string id = key.attribute("id").value();
-      if (kind != "edge") node_keys_[id] = found;
-      if (kind != "node") edge_keys_[id] = found;
+      const bool all = kind.empty() || kind == "all";
+      if (all || kind == "node") node_keys_[id] = found;
+      if (all || kind == "edge") edge_keys_[id] = found;
+      if (all || kind == "graph") graph_keys_[id] = found;
     }
   }
 
@@ -107,6 +114,7 @@ class GraphMlReader {
   pugi::xml_node at_;  // what is read, for errors
   Keys node_keys_;
   Keys edge_keys_;
+  Keys graph_keys_;
   bool directed_ = false;
   GraphBuilder builder_;
 };
@@ -134,8 +142,8 @@ bool is_graphml(std::string_view text) {
   return text.substr(0, kLooked).find("<graphml") != std::string_view::npos;
 }
 
-GraphMap parse_graphml(std::string_view text, const std::string& source) {
-  return GraphMlReader(text, source).read();
+GraphMap parse_graphml(std::string_view text, const std::string& source, const MapOptions& options) {
+  return GraphMlReader(text, source, options).read();
 }
 
 std::string format_graphml(const GraphMap& map) {
@@ -148,22 +156,25 @@ std::string format_graphml(const GraphMap& map) {
   const bool blocked = std::find(map.blocked.begin(), map.blocked.end(), true) != map.blocked.end();
   if (blocked) append_key(root, "blocked", "node", "blocked", "boolean");
   if (!map.prizes.empty()) append_key(root, "prize", "node", "prize", "double");
-  if (!map.places.empty()) {
+  const std::vector<Point>& points = map.places.points;
+  if (!points.empty()) {
     append_key(root, "x", "node", "x", "double");
     append_key(root, "y", "node", "y", "double");
   }
+  if (!map.places.unit.empty()) append_key(root, "unit", "graph", "unit", "string");
   if (map.graph.weighted()) append_key(root, "weight", "edge", "weight", "double");
   pugi::xml_node graph = root.append_child("graph");
   graph.append_attribute("edgedefault") = map.graph.directed() ? "directed" : "undirected";
+  if (!map.places.unit.empty()) append_data(graph, "unit", map.places.unit);
   const auto id_of = [&](NodeId node) { return map.labels.empty() ? std::to_string(node) : map.labels[node]; };
   for (NodeId node = 0; node < map.graph.node_count(); ++node) {
     pugi::xml_node item = graph.append_child("node");
     item.append_attribute("id") = id_of(node).c_str();
     if (map.blocked[node]) append_data(item, "blocked", "true");
     if (!map.prizes.empty()) append_data(item, "prize", fmt::format("{}", map.prizes[node]));
-    if (map.places.empty()) continue;
-    append_data(item, "x", fmt::format("{}", map.places[node].x));
-    append_data(item, "y", fmt::format("{}", map.places[node].y));
+    if (points.empty()) continue;
+    append_data(item, "x", fmt::format("{}", points[node].x));
+    append_data(item, "y", fmt::format("{}", points[node].y));
   }
   for (const Edge& edge : map.graph.edges()) {
     pugi::xml_node item = graph.append_child("edge");

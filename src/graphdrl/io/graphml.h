@@ -17,7 +17,7 @@ bool is_graphml(std::string_view text);
 // `lat`, and `label` or `name` of nodes; others are skipped. Throws Error, naming `source` and mostly the line, on XML
 // that is not well formed, on no graph or several, on graphs within nodes, on edges between more than two nodes, on an
 // id used twice, and on values out of range.
-GraphMap parse_graphml(std::string_view text, const std::string& source);
+GraphMap parse_graphml(std::string_view text, const std::string& source, const MapOptions& options = {});
 
 // Ends with a line break. Keeps all but the task.
 std::string format_graphml(const GraphMap& map);

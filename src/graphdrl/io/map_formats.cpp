@@ -1,13 +1,24 @@
 #include "graphdrl/io/map_formats.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <type_traits>
 
+#include "graphdrl/base/error.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/dimacs.h"
+#include "graphdrl/io/dot.h"
 #include "graphdrl/io/edge_list.h"
+#include "graphdrl/io/gml.h"
 #include "graphdrl/io/graphml.h"
 #include "graphdrl/io/moving_ai.h"
+#include "graphdrl/io/numpy_map.h"
+#include "graphdrl/io/pajek.h"
+#include "graphdrl/io/picture.h"
+#include "graphdrl/io/ros_map.h"
 #include "graphdrl/io/tsplib.h"
 
 namespace graphdrl {
@@ -23,8 +34,12 @@ bool is_any(std::string_view /*text*/) {
 }
 
 template <auto kParse>
-AnyMap read(std::string_view text, const std::string& source) {
-  return kParse(text, source);
+AnyMap read(std::string_view text, const std::string& source, const MapOptions& options) {
+  if constexpr (std::is_invocable_v<decltype(kParse), std::string_view, const std::string&, const MapOptions&>) {
+    return kParse(text, source, options);
+  } else {
+    return kParse(text, source);
+  }
 }
 
 constexpr std::array kFormats = {
@@ -33,19 +48,65 @@ constexpr std::array kFormats = {
               .purpose = "any graph as JSON, as networkx and D3 write it",
               .recognise = is_node_link,
               .read = read<parse_node_link>,
-              .write_graph = format_node_link},
+              .write_graph = format_node_link,
+              .takes_cost_attribute = true},
     MapFormat{.name = "graphml",
               .ending = ".graphml",
               .purpose = "any graph as XML, as networkx, igraph, Gephi and yEd write it",
               .recognise = is_graphml,
               .read = read<parse_graphml>,
-              .write_graph = format_graphml},
+              .write_graph = format_graphml,
+              .takes_cost_attribute = true},
+    MapFormat{.name = "png",
+              .ending = ".png",
+              .purpose = "a grid as a picture: a pixel is a cell, blocked where dark",
+              .recognise = is_png,
+              .read = read<parse_png_map>,
+              .write_grid = format_png_map,
+              .takes_cell_pixels = true},
+    MapFormat{.name = "netpbm",
+              .ending = ".pgm",
+              .purpose = "the same as PGM, PBM or PPM",
+              .recognise = is_netpbm,
+              .read = read<parse_netpbm_map>,
+              .write_grid = format_pgm_map,
+              .takes_cell_pixels = true},
+    MapFormat{.name = "numpy",
+              .ending = ".npy",
+              .purpose = "adjacency and obstacles as NumPy arrays, as the paper's author writes them",
+              .recognise = is_numpy,
+              .read = read<parse_numpy_map>},
     MapFormat{.name = "moving-ai",
               .ending = ".map",
               .purpose = "grid maps of games, cities and mazes (movingai.com)",
               .recognise = is_moving_ai,
               .read = read<parse_moving_ai>,
               .write_grid = format_moving_ai},
+    MapFormat{.name = "ros",
+              .ending = ".yaml",
+              .purpose = "occupancy grids of robots: map_server's YAML and picture",
+              .recognise = is_ros_map,
+              .read = read<parse_ros_map>,
+              .takes_unknown = true},
+    MapFormat{.name = "dot",
+              .ending = ".dot",
+              .purpose = "any graph in Graphviz's language",
+              .recognise = is_dot,
+              .read = read<parse_dot>,
+              .write_graph = format_dot,
+              .takes_cost_attribute = true},
+    MapFormat{.name = "gml",
+              .ending = ".gml",
+              .purpose = "any graph, as networkx, igraph, Gephi and yEd write it",
+              .recognise = is_gml,
+              .read = read<parse_gml>,
+              .write_graph = format_gml,
+              .takes_cost_attribute = true},
+    MapFormat{.name = "pajek",
+              .ending = ".net",
+              .purpose = "graphs of Pajek, as networkx and igraph write them",
+              .recognise = is_pajek,
+              .read = read<parse_pajek>},
     MapFormat{.name = "tsplib",
               .ending = ".oplib",
               .purpose = "orienteering problems of OPLib, complete graphs of TSPLIB",
@@ -60,7 +121,8 @@ constexpr std::array kFormats = {
               .ending = ".csv",
               .purpose = "two nodes and a cost a line: CSV, networkx, igraph, SNAP",
               .recognise = is_edge_list,
-              .read = read<parse_edge_list>},
+              .read = read<parse_edge_list>,
+              .takes_cost_attribute = true},
     MapFormat{.name = "ascii",
               .ending = ".txt",
               .purpose = "a grid drawn with '.' (free) and '#' (blocked)",
@@ -68,6 +130,10 @@ constexpr std::array kFormats = {
               .read = read<parse_ascii_map>,
               .write_grid = format_ascii_map},
 };
+
+bool can_write(const MapFormat& format) {
+  return format.write_grid != nullptr || format.write_graph != nullptr;
+}
 
 }  // namespace
 
@@ -78,6 +144,37 @@ std::span<const MapFormat> map_formats() {
 const MapFormat& format_of(std::string_view text) {
   return *std::find_if(kFormats.begin(), kFormats.end(),
                        [&](const MapFormat& format) { return format.recognise(text); });
+}
+
+GraphMap as_graph(const AnyMap& map) {
+  const auto* const grid = std::get_if<GridMap>(&map);
+  if (grid == nullptr) return std::get<GraphMap>(map);
+  GridMap open = *grid;
+  open.blocked.assign(open.blocked.size(), false);
+  GraphMap graph{.graph = Graph::grid(grid->diagonals ? *grid : open), .blocked = grid->blocked, .labels = {}};
+  if (!grid->frame) return graph;
+  graph.places.unit = grid->frame->unit;
+  for (NodeId node = 0; node < graph.graph.node_count(); ++node) graph.places.points.push_back(grid->place(node));
+  return graph;
+}
+
+std::string format_map(const AnyMap& map, const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  const auto* const format = std::find_if(kFormats.begin(), kFormats.end(),
+                                          [&](const MapFormat& one) { return one.ending == ending && can_write(one); });
+  if (format == kFormats.end()) {
+    std::string endings;
+    for (const MapFormat& one : kFormats) {
+      if (can_write(one)) endings += fmt::format("{}{}", endings.empty() ? "" : ", ", one.ending);
+    }
+    throw Error({.what = "no format with this ending can be written", .expected = endings, .where = file});
+  }
+  const auto* const grid = std::get_if<GridMap>(&map);
+  if (grid != nullptr && format->write_grid != nullptr) return format->write_grid(*grid);
+  if (format->write_graph == nullptr) {
+    throw Error({.what = "this format holds grids only", .expected = "another ending", .where = file});
+  }
+  return format->write_graph(as_graph(map));
 }
 
 }  // namespace graphdrl

@@ -1,9 +1,13 @@
 #include "graphdrl/io/map_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/graph/grid_transforms.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
 
@@ -13,19 +17,81 @@ namespace {
 constexpr std::string_view kPaperLetters = "abcdefghij";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets begin UTF-8 with it
 
-NamedMap paper_map(char letter) {
-  const std::string name = std::string("paper:") + letter;
-  return {name, parse_ascii_map(paper_map_text(letter), name)};
+void refuse_option(const char* option, const std::string& what, const std::string& source) {
+  throw Error({.what = fmt::format("{} goes with {}", option, what), .where = source});
 }
 
-NamedMap file_map(const std::filesystem::path& path) {
+// Robot, cells and neighbours, as the options say.
+void shape_grid(GridMap& map, const MapOptions& options, const std::string& source) {
+  const double side = map.frame ? map.frame->cell_size : 1;
+  const std::string unit = map.frame ? map.frame->unit : "cells";
+  const double free_before = static_cast<double>(count_free(map)) * side * side;
+  double scale = 1;
+  if (options.cell_size) {
+    if (!map.frame) refuse_option("--cell-size", "maps that say how large their cells are", source);
+    scale = *options.cell_size / side;
+    const double most = std::min(map.rows, map.cols);
+    if (!(scale >= 1 - 1e-9 && scale <= most)) {
+      throw Error({.what = "bad cell size",
+                   .expected = fmt::format("{:g} to {:g} {}", side, side * most, unit),
+                   .got = fmt::format("{:g}", *options.cell_size),
+                   .where = source});
+    }
+    scale = std::max(1.0, scale);
+  }
+  if (options.robot_radius > 0) map = with_obstacles_grown(std::move(map), options.robot_radius / side);
+  const std::int64_t cells_before = count_free(map);
+  if (scale > 1) map = coarsened(map, scale);
+  map.diagonals = options.diagonals;
+  map.cut_corners = options.cut_corners;
+  const double free_after = static_cast<double>(count_free(map)) * side * side * scale * scale;
+  if (free_after == 0) {
+    throw Error({.what = "no cell is left free",
+                 .expected = "a smaller robot or smaller cells",
+                 .got = fmt::format("{} free cells of {:g} {}", cells_before, side, unit),
+                 .where = source});
+  }
+  if (free_after >= free_before || !options.note) return;
+  options.note(fmt::format("{}: {:.4g} of {:.4g} square {} of free ground, {:.1f} %, became blocked", source,
+                           free_before - free_after, free_before, unit, 100 * (1 - free_after / free_before)));
+}
+
+void shape_map(AnyMap& map, const MapOptions& options, const std::string& source) {
+  if (auto* const grid = std::get_if<GridMap>(&map)) return shape_grid(*grid, options, source);
+  if (options.cell_size) refuse_option("--cell-size", "grids", source);
+  if (options.robot_radius > 0) refuse_option("--robot-radius", "grids", source);
+  if (options.diagonals) refuse_option("--connectivity", "grids", source);
+}
+
+void check_options(const MapFormat& format, const MapOptions& options, const std::string& source) {
+  if (!options.cost_attribute.empty() && !format.takes_cost_attribute) {
+    refuse_option("--cost-attribute", "graphs whose edges have attributes", source);
+  }
+  if (options.cell_pixels != 1 && !format.takes_cell_pixels) refuse_option("--cell-pixels", "pictures", source);
+  if (options.unknown_is_free && !format.takes_unknown) refuse_option("--unknown", "ROS maps", source);
+}
+
+NamedMap file_map(const std::filesystem::path& path, const MapOptions& options) {
   const std::string content = read_file(path);
   std::string_view text = content;
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  return {path.stem().string(), format_of(text).read(text, path.string())};
+  const MapFormat& format = format_of(text);
+  const std::string source = path.string();
+  check_options(format, options, source);
+  NamedMap named{path.stem().string(), format.read(text, source, options)};
+  shape_map(named.map, options, source);
+  return named;
 }
 
-std::vector<NamedMap> folder_maps(const std::filesystem::path& folder) {
+NamedMap paper_map(char letter, const MapOptions& options) {
+  const std::string name = std::string("paper:") + letter;
+  NamedMap named{name, parse_ascii_map(paper_map_text(letter), name)};
+  check_options(format_of("."), options, name);
+  shape_map(named.map, options, name);
+  return named;
+}
+
+std::vector<NamedMap> folder_maps(const std::filesystem::path& folder, const MapOptions& options) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -36,18 +102,27 @@ std::vector<NamedMap> folder_maps(const std::filesystem::path& folder) {
   if (error) throw Error({.what = "cannot read the folder (" + error.message() + ")", .where = folder.string()});
   if (files.empty()) throw Error({.what = "no map files in the folder", .where = folder.string()});
   std::sort(files.begin(), files.end());
+  // The picture of a ROS map is no map of its own.
+  const auto has_yaml = [&](const std::filesystem::path& file) {
+    const std::string ending = file.extension().string();
+    if (ending != ".pgm" && ending != ".png") return false;
+    return std::binary_search(files.begin(), files.end(), std::filesystem::path(file).replace_extension(".yaml"));
+  };
+  std::vector<std::filesystem::path> pictures;
+  std::copy_if(files.begin(), files.end(), std::back_inserter(pictures), has_yaml);
+  std::erase_if(files, [&](const auto& file) { return std::binary_search(pictures.begin(), pictures.end(), file); });
   std::vector<NamedMap> maps;
   maps.reserve(files.size());
-  for (const auto& file : files) maps.push_back(file_map(file));
+  for (const auto& file : files) maps.push_back(file_map(file, options));
   return maps;
 }
 
 }  // namespace
 
-std::vector<NamedMap> load_maps(const std::string& source) {
+std::vector<NamedMap> load_maps(const std::string& source, const MapOptions& options) {
   std::vector<NamedMap> maps;
   if (source == "paper") {
-    for (const char letter : kPaperLetters) maps.push_back(paper_map(letter));
+    for (const char letter : kPaperLetters) maps.push_back(paper_map(letter, options));
     return maps;
   }
   if (source.starts_with("paper:")) {
@@ -55,18 +130,18 @@ std::vector<NamedMap> load_maps(const std::string& source) {
     if (letter.size() != 1 || kPaperLetters.find(letter) == std::string_view::npos) {
       throw Error({.what = "no such map", .expected = "paper:a to paper:j", .got = in_quotes(source)});
     }
-    return {paper_map(letter.front())};
+    return {paper_map(letter.front(), options)};
   }
   std::error_code error;
-  if (std::filesystem::is_directory(source, error)) return folder_maps(source);
-  if (std::filesystem::exists(source, error)) return {file_map(source)};
+  if (std::filesystem::is_directory(source, error)) return folder_maps(source, options);
+  if (std::filesystem::exists(source, error)) return {file_map(source, options)};
   throw Error({.what = "no such map",
                .expected = "paper, paper:a to paper:j, a file or a folder of files",
                .got = in_quotes(source, 200)});
 }
 
-NamedMap load_map(const std::string& source) {
-  std::vector<NamedMap> maps = load_maps(source);
+NamedMap load_map(const std::string& source, const MapOptions& options) {
+  std::vector<NamedMap> maps = load_maps(source, options);
   if (maps.size() != 1) {
     throw Error(
         {.what = "more than one map", .expected = "one map", .got = std::to_string(maps.size()), .where = source});

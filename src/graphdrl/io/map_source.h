@@ -15,12 +15,12 @@ struct NamedMap {
 };
 
 // `paper:a` … `paper:j`, `paper` (all ten), a file, or a folder of files (read in order of name; hidden ones are
-// skipped), in any format of map_formats(). Throws Error where nothing can be read under that name. A file called
-// `paper` is reachable as `./paper`.
-std::vector<NamedMap> load_maps(const std::string& source);
+// skipped, and so is the picture of a ROS map), in any format of map_formats(). Throws Error where nothing can be read
+// under that name, and where an option has no meaning for the map. A file called `paper` is reachable as `./paper`.
+std::vector<NamedMap> load_maps(const std::string& source, const MapOptions& options = {});
 
 // As load_maps, for a source that must hold exactly one map.
-NamedMap load_map(const std::string& source);
+NamedMap load_map(const std::string& source, const MapOptions& options = {});
 
 // The text of one of the paper's environments, 'a' to 'j'; empty for any other letter. Made from maps/paper/ at build
 // time.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/io/node_ids.h"
 
@@ -16,10 +17,31 @@ namespace {
 
 using nlohmann::json;
 
-// The keys of nodes and links that are looked at.
-enum Key { kId, kBlocked, kPrize, kX, kY, kSource, kTarget, kWeight, kCost, kKeyCount };
-constexpr std::array<const char*, kKeyCount> kKeyNames = {"id",     "blocked", "prize",  "x",   "y",
-                                                          "source", "target",  "weight", "cost"};
+// The keys of nodes and links that are looked at. Of several for one thing the first one counts.
+enum Key {
+  kId,
+  kBlocked,
+  kPrize,
+  kScore,
+  kX,
+  kLon,
+  kLongitude,
+  kY,
+  kLat,
+  kLatitude,
+  kLabel,
+  kName,
+  kSource,
+  kTarget,
+  kWeight,
+  kCost,
+  kLength,
+  kDistance,
+  kKeyCount
+};
+constexpr std::array<const char*, kKeyCount> kKeyNames = {
+    "id",       "blocked", "prize", "score",  "x",      "lon",    "longitude", "y",      "lat",
+    "latitude", "label",   "name",  "source", "target", "weight", "cost",      "length", "distance"};
 
 // What stands under one of these keys.
 struct Field {
@@ -58,7 +80,8 @@ json value_at(std::string_view text, const std::string& key, std::int64_t index)
 // Takes nlohmann's SAX events (their names are the library's) and fills the arrays of a graph.
 class NodeLinkReader {
  public:
-  NodeLinkReader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  NodeLinkReader(std::string_view text, const std::string& source, const MapOptions& options)
+      : text_(text), source_(source), cost_attribute_(options.cost_attribute) {}
 
   GraphMap read();
 
@@ -89,15 +112,17 @@ class NodeLinkReader {
   // What the events are directly inside of; deeper ones are skipped.
   enum Depth { kOutside, kDocument, kArray, kItem };
   // The document's keys that are looked at.
-  enum class Section { kOther, kDirected, kNodes, kLinks };
+  enum class Section { kOther, kDirected, kGraph, kNodes, kLinks };
 
   Section section_of(const std::string& key);
   bool value(const Field& field, std::string_view text = {});
   void enter();
   void read_node();
   void read_link();
+  Key first_given(std::initializer_list<Key> keys) const;
   NodeId node_at(Key key) const;
   double number_at(Key key) const;
+  const char* name_of(Key key) const;
 
   // Throws Error about the item at hand, showing what stands under its key, or it whole where it has no such key.
   [[noreturn]] void fail(const std::string& what, const std::string& expected, Key key = kKeyCount) const;
@@ -106,6 +131,8 @@ class NodeLinkReader {
 
   std::string_view text_;
   const std::string& source_;
+  const std::string& cost_attribute_;  // read as kWeight, the other costs not at all; empty: as they are called
+  bool cost_attribute_met_ = false;
 
   bool links_only_ = false;  // the second reading
   int depth_ = kOutside;
@@ -125,15 +152,21 @@ class NodeLinkReader {
   NodeIds ids_;
   GraphMap map_;
   std::vector<Edge> edges_;
+  std::vector<std::string> names_;  // of the nodes that have one
+  bool at_unit_ = false;            // of the key "graph"
 };
+
+const char* NodeLinkReader::name_of(Key key) const {
+  return key == kWeight && !cost_attribute_.empty() ? cost_attribute_.c_str() : kKeyNames[key];
+}
 
 void NodeLinkReader::fail(const std::string& what, const std::string& expected, Key key) const {
   require_shallow_json(text_, source_);
   json item = value_at(text_, section_key_, index_);
-  const bool under_key = key != kKeyCount && item.is_object() && item.contains(kKeyNames[key]);
+  const bool under_key = key != kKeyCount && item.is_object() && item.contains(name_of(key));
   throw Error({.what = what,
                .expected = expected,
-               .got = shortened(under_key ? item[kKeyNames[key]] : item),
+               .got = shortened(under_key ? item[name_of(key)] : item),
                .where = fmt::format("{}: {}[{}]", source_, section_key_, index_)});
 }
 
@@ -148,6 +181,7 @@ void NodeLinkReader::fail_at_key(const std::string& expected) const {
 NodeLinkReader::Section NodeLinkReader::section_of(const std::string& key) {
   if (links_only_) return key == links_key_ ? Section::kLinks : Section::kOther;
   if (key == "directed") return Section::kDirected;
+  if (key == "graph") return Section::kGraph;
   const bool links = key == "links" || (key == "edges" && links_key_ != "links");
   if (key != "nodes" && !links) return Section::kOther;
   if (key == (links ? links_key_ : nodes_key_)) {
@@ -164,8 +198,15 @@ bool NodeLinkReader::key(std::string& name) {
   if (depth_ == kDocument) {
     section_ = section_of(name);
     section_key_ = std::move(name);
+  } else if (depth_ == kArray) {
+    at_unit_ = section_ == Section::kGraph && name == "unit";
   } else if (depth_ == kItem && reading_) {
     key_ = static_cast<Key>(std::find(kKeyNames.begin(), kKeyNames.end(), name) - kKeyNames.begin());
+    if (!cost_attribute_.empty()) {
+      const bool cost = key_ == kWeight || key_ == kCost || key_ == kLength || key_ == kDistance;
+      if (cost) key_ = kKeyCount;
+      if (section_ == Section::kLinks && name == cost_attribute_) key_ = kWeight;
+    }
   }
   return true;
 }
@@ -177,8 +218,10 @@ bool NodeLinkReader::value(const Field& field, std::string_view text) {
   if (depth_ == kDocument && section_ == Section::kDirected) {
     if (field.kind != Field::Kind::kBoolean) fail_at_key("true or false");
     directed_ = field.truth;
-  } else if (depth_ == kDocument && section_ != Section::kOther) {
+  } else if (depth_ == kDocument && (section_ == Section::kNodes || section_ == Section::kLinks)) {
     fail_at_key("an array");
+  } else if (depth_ == kArray && at_unit_) {
+    map_.places.unit = text;
   } else if (depth_ == kArray && reading_) {
     fail(fmt::format("no key \"{}\"", kKeyNames[section_ == Section::kNodes ? kId : kSource]), "an object with it");
   } else if (depth_ == kItem && reading_ && key_ != kKeyCount) {
@@ -194,7 +237,9 @@ void NodeLinkReader::enter() {
 }
 
 bool NodeLinkReader::start_object(std::size_t) {
-  if (depth_ == kArray && reading_) {
+  if (depth_ == kDocument && section_ == Section::kGraph) {
+    at_unit_ = false;
+  } else if (depth_ == kArray && reading_) {
     for (Field& field : fields_) field.kind = Field::Kind::kMissing;
   } else if (depth_ != kOutside) {
     value({.kind = Field::Kind::kOther});
@@ -232,6 +277,12 @@ bool NodeLinkReader::end_array() {
   return true;
 }
 
+// The first of them where none is given.
+Key NodeLinkReader::first_given(std::initializer_list<Key> keys) const {
+  const auto* const found = std::find_if(keys.begin(), keys.end(), [&](Key key) { return fields_[key].given(); });
+  return found == keys.end() ? *keys.begin() : *found;
+}
+
 NodeId NodeLinkReader::node_at(Key key) const {
   const Field& field = fields_[key];
   if (!field.given()) fail(fmt::format("no key \"{}\"", kKeyNames[key]), "an object with it");
@@ -246,7 +297,7 @@ double NodeLinkReader::number_at(Key key) const {
   const Field& field = fields_[key];
   if (!field.given()) return 1;
   if (!field.is_number() || !(field.number >= 0)) {
-    fail(fmt::format("bad \"{}\"", kKeyNames[key]), "a number from 0 up", key);
+    fail(fmt::format("bad \"{}\"", name_of(key)), "a number from 0 up", key);
   }
   return field.number + 0.0;  // turns -0 into 0
 }
@@ -260,10 +311,15 @@ void NodeLinkReader::read_node() {
   const Field& blocked = fields_[kBlocked];
   if (blocked.given() && blocked.kind != Field::Kind::kBoolean) fail("bad \"blocked\"", "true or false", kBlocked);
   map_.blocked.push_back(blocked.given() && blocked.truth);
-  if (fields_[kX].is_number() && fields_[kY].is_number()) {
-    map_.places.push_back({fields_[kX].number, fields_[kY].number});
+  const Key x = first_given({kX, kLon, kLongitude});
+  const Field& y = fields_[first_given({kY, kLat, kLatitude})];
+  if (fields_[x].is_number() && y.is_number()) {
+    map_.places.points.push_back({fields_[x].number, y.number});
+    if (x != kX) map_.places.unit = "degrees";
   }
-  const double prize = number_at(kPrize);
+  const Key name = first_given({kLabel, kName});
+  if (fields_[name].kind == Field::Kind::kText) names_.push_back(texts_[name]);
+  const double prize = number_at(first_given({kPrize, kScore}));
   if (prize == 1 && map_.prizes.empty()) return;
   map_.prizes.resize(map_.blocked.size(), 1.0);
   map_.prizes.back() = prize;
@@ -271,7 +327,9 @@ void NodeLinkReader::read_node() {
 
 void NodeLinkReader::read_link() {
   const NodeId source = node_at(kSource);
-  edges_.push_back({source, node_at(kTarget), number_at(fields_[kWeight].given() ? kWeight : kCost)});
+  const Key cost = first_given({kWeight, kCost, kLength, kDistance});
+  cost_attribute_met_ = cost_attribute_met_ || fields_[cost].given();
+  edges_.push_back({source, node_at(kTarget), number_at(cost)});
 }
 
 GraphMap NodeLinkReader::read() {
@@ -286,8 +344,12 @@ GraphMap NodeLinkReader::read() {
     json::sax_parse(text_, this);
   }
   map_.graph = Graph::from_edges(ids_.count(), edges_, directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
-  map_.labels = ids_.take_labels();
-  if (map_.places.size() != map_.blocked.size()) map_.places.clear();
+  if (!cost_attribute_.empty() && !cost_attribute_met_) {
+    throw Error({.what = "no edge has this attribute", .got = in_quotes(cost_attribute_), .where = source_});
+  }
+  map_.labels = labels_if_unique(std::move(names_), ids_.count());
+  if (map_.labels.empty()) map_.labels = ids_.take_labels();
+  if (map_.places.points.size() != map_.blocked.size()) map_.places = {};
   return std::move(map_);
 }
 
@@ -297,8 +359,8 @@ void append_text(std::string& text, const std::string& value) {
 
 }  // namespace
 
-GraphMap parse_node_link(std::string_view text, const std::string& source) {
-  return NodeLinkReader(text, source).read();
+GraphMap parse_node_link(std::string_view text, const std::string& source, const MapOptions& options) {
+  return NodeLinkReader(text, source, options).read();
 }
 
 std::string format_node_link(const GraphMap& map) {
@@ -306,7 +368,7 @@ std::string format_node_link(const GraphMap& map) {
 }
 
 std::string format_node_link(const Graph& graph, const std::vector<bool>& blocked, std::span<const std::string> labels,
-                             std::span<const double> prizes, std::span<const Point> places) {
+                             std::span<const double> prizes, const Places& places) {
   std::string text;
   const auto append_id = [&](NodeId node) {
     if (labels.empty()) {
@@ -315,14 +377,16 @@ std::string format_node_link(const Graph& graph, const std::vector<bool>& blocke
       append_text(text, labels[node]);
     }
   };
-  text += fmt::format(R"({{"directed":{},"multigraph":false,"graph":{{}},"nodes":[)", graph.directed());
+  const std::string unit = places.unit.empty() ? "" : R"("unit":)" + json(places.unit).dump();
+  text += fmt::format(R"({{"directed":{},"multigraph":false,"graph":{{{}}},"nodes":[)", graph.directed(), unit);
   for (NodeId node = 0; node < graph.node_count(); ++node) {
     text += node == 0 ? R"({"id":)" : R"(,{"id":)";
     append_id(node);
     if (blocked[node]) text += R"(,"blocked":true)";
     if (!prizes.empty() && prizes[node] != 1) text += R"(,"prize":)" + json(prizes[node]).dump();
-    if (!places.empty()) {
-      text += R"(,"x":)" + json(places[node].x).dump() + R"(,"y":)" + json(places[node].y).dump();
+    if (!places.points.empty()) {
+      const auto [x, y] = places.points[node];
+      text += R"(,"x":)" + json(x).dump() + R"(,"y":)" + json(y).dump();
     }
     text += '}';
   }

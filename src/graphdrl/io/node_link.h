@@ -9,6 +9,7 @@
 #include "graphdrl/graph/given_task.h"
 #include "graphdrl/graph/graph.h"
 #include "graphdrl/graph/point.h"
+#include "graphdrl/io/map_options.h"
 
 namespace graphdrl {
 
@@ -18,19 +19,20 @@ struct GraphMap {
   std::vector<bool> blocked;        // [N]
   std::vector<std::string> labels;  // [N], what the file calls its nodes; empty where that is 0 … N - 1
   std::vector<double> prizes = {};  // [N], what a first visit is worth; empty where that is 1 everywhere
-  std::vector<Point> places = {};   // [N], where they lie, in the file's unit; empty where it does not say
+  Places places = {};               // where they lie
   GivenTask task = {};
 };
 
 // {"directed": false, "nodes": [{"id": "a", "blocked": true, "prize": 3}, …], "links": [{"source": "a", "target": "b",
 // "weight": 2}, …]}
 //
-// Nodes are numbered as they stand. Ids are whole numbers or texts; `blocked` is false, `prize` and `weight`, also
-// called `cost`, are 1 unless given, and at least 0; `x` and `y` are kept where every node has both; `links` may be
+// Nodes are numbered as they stand. Ids are whole numbers or texts; `blocked` is false, `prize` and `weight`, by any of
+// their names [graph_builder.h], are 1 unless given, and at least 0; coordinates are kept where every node has them, a
+// `label` or `name` where all are different texts; {"graph": {"unit": "m"}} is the coordinates' unit; `links` may be
 // called `edges`; keys may stand in any order, others are skipped. Throws Error, naming `source` and the place, on
 // anything else, on an id used twice and on a graph without a free node. Cost: linear, without a copy of the document;
 // the text is read twice where links stand before nodes.
-GraphMap parse_node_link(std::string_view text, const std::string& source);
+GraphMap parse_node_link(std::string_view text, const std::string& source, const MapOptions& options = {});
 
 // Ends with a line break.
 std::string format_node_link(const GraphMap& map);
@@ -38,6 +40,6 @@ std::string format_node_link(const GraphMap& map);
 // The same of parts that stand elsewhere; labels, prizes and places may be empty.
 std::string format_node_link(const Graph& graph, const std::vector<bool>& blocked,
                              std::span<const std::string> labels = {}, std::span<const double> prizes = {},
-                             std::span<const Point> places = {});
+                             const Places& places = {});
 
 }  // namespace graphdrl

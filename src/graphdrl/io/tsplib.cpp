@@ -260,7 +260,7 @@ class TsplibReader {
                  .blocked = std::vector<bool>(nodes_),
                  .labels = {},
                  .prizes = std::move(prizes_),
-                 .places = std::move(places_),
+                 .places = {.points = std::move(places_), .unit = {}},
                  .task = task_};
     for (NodeId node = 1; node <= nodes_; ++node) map.labels.push_back(std::to_string(node));
     return map;

@@ -1,0 +1,25 @@
+// What users say of a map beside its file.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace graphdrl {
+
+struct MapOptions {
+  std::string cost_attribute = {};  // the edges' attribute that is their cost; empty: the first of cost_names()
+
+  // Of grids.
+  int cell_pixels = 1;                   // of pictures: pixels a side of a cell
+  bool unknown_is_free = false;          // of ROS maps: cells that nobody has looked at
+  double robot_radius = 0;               // obstacles grow by it; in the frame's unit, or in cells
+  std::optional<double> cell_size = {};  // a side of the cells wanted, in the frame's unit
+  bool diagonals = false;                // eight neighbours
+  bool cut_corners = false;              // a diagonal step may have a blocked cell beside it
+
+  // Is told in one line what a user should know, as what was lost by larger cells.
+  std::function<void(const std::string&)> note = {};
+};
+
+}  // namespace graphdrl

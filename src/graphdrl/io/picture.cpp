@@ -1,0 +1,216 @@
+#include "graphdrl/io/picture.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
+constexpr std::uint8_t kWhite = 255;
+constexpr int kHalf = 128;  // darker pixels are blocked
+
+void check_size(std::int64_t width, std::int64_t height, const std::string& source) {
+  if (width > 0 && height > 0 && width <= kMostPixels / height) return;
+  throw Error({.what = "the picture has too many pixels",
+               .expected = fmt::format("1 to {}", kMostPixels),
+               .got = fmt::format("{} x {}", width, height),
+               .where = source});
+}
+
+// Reads the numbers and samples of a file of Netpbm.
+class NetpbmReader {
+ public:
+  NetpbmReader(std::string_view bytes, const std::string& source) : bytes_(bytes), source_(source) {}
+
+  GreyPicture read() {
+    const char kind = bytes_[1];
+    const bool plain = kind <= '3';
+    const bool bits = kind == '1' || kind == '4';
+    const int channels = kind == '3' || kind == '6' ? 3 : 1;
+    at_ = 2;
+    const double width = number(1e9);
+    const double height = number(1e9);
+    check_size(static_cast<std::int64_t>(width), static_cast<std::int64_t>(height), source_);
+    most_ = bits ? 1 : number(65535);
+    if (most_ == 0) fail("a maximum of 0", "1 to 65535");
+    GreyPicture picture{.width = static_cast<int>(width), .height = static_cast<int>(height), .pixels = {}};
+    const std::int64_t samples = std::int64_t{picture.width} * picture.height * channels;
+    if (!plain) ++at_;  // one white space
+    const std::int64_t row_bytes =
+        bits ? (picture.width + 7) / 8 : std::int64_t{picture.width} * channels * (most_ > 255 ? 2 : 1);
+    const std::int64_t needed = plain ? samples : row_bytes * picture.height;
+    if (std::ssize(bytes_) - static_cast<std::int64_t>(at_) < needed)
+      fail("the file ends within the picture", "more bytes");
+    picture.pixels.reserve(static_cast<std::size_t>(picture.width) * picture.height);
+    for (int row = 0; row < picture.height; ++row) {
+      for (int col = 0; col < picture.width; ++col) {
+        if (bits && !plain) {
+          const auto byte = static_cast<unsigned char>(bytes_[at_ + col / 8]);
+          picture.pixels.push_back((byte >> (7 - col % 8)) & 1 ? 0 : kWhite);
+          continue;
+        }
+        const double value = channels == 1 ? sample(plain, bits) : brightness(plain);
+        picture.pixels.push_back(static_cast<std::uint8_t>(std::lround(kWhite * (bits ? 1 - value : value / most_))));
+      }
+      if (bits && !plain) at_ += row_bytes;
+    }
+    return picture;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
+    throw Error({.what = what, .expected = expected, .where = fmt::format("{}: byte {}", source_, at_)});
+  }
+
+  void skip_space() {
+    for (; at_ < bytes_.size(); ++at_) {
+      if (bytes_[at_] == '#') at_ = std::min(bytes_.find('\n', at_), bytes_.size() - 1);
+      if (std::strchr(" \t\r\n\v\f", bytes_[at_]) == nullptr || bytes_[at_] == 0) return;
+    }
+  }
+
+  double number(double most) {
+    skip_space();
+    double value = -1;
+    for (; at_ < bytes_.size() && bytes_[at_] >= '0' && bytes_[at_] <= '9'; ++at_) {
+      value = std::max(value, 0.0) * 10 + (bytes_[at_] - '0');
+      if (value > most) break;
+    }
+    if (value < 0 || value > most) fail("not a number", fmt::format("a whole number up to {:.0f}", most));
+    return value;
+  }
+
+  // 0 to most_.
+  double sample(bool plain, bool bit) {
+    if (!plain) {
+      const int bytes = most_ > 255 ? 2 : 1;
+      int value = 0;
+      for (int i = 0; i < bytes; ++i) value = value << 8 | static_cast<unsigned char>(bytes_[at_++]);
+      return std::min<double>(value, most_);
+    }
+    if (!bit) return number(most_);
+    skip_space();  // bits may stand without spaces
+    if (at_ >= bytes_.size() || (bytes_[at_] != '0' && bytes_[at_] != '1')) fail("not a bit", "0 or 1");
+    return bytes_[at_++] - '0';
+  }
+
+  // Of a colour [ITU-R BT.709].
+  double brightness(bool plain) {
+    const double red = sample(plain, false);
+    const double green = sample(plain, false);
+    return 0.2126 * red + 0.7152 * green + 0.0722 * sample(plain, false);
+  }
+
+  std::string_view bytes_;
+  const std::string& source_;
+  std::size_t at_ = 0;
+  double most_ = 1;
+};
+
+GridMap grid_of(const GreyPicture& picture, int cell_pixels, const std::string& source) {
+  GridMap map{.rows = picture.height / cell_pixels, .cols = picture.width / cell_pixels, .blocked = {}};
+  if (map.rows == 0 || map.cols == 0) {
+    throw Error({.what = "the picture is smaller than a cell",
+                 .expected = fmt::format("{0} x {0} pixels or more", cell_pixels),
+                 .got = fmt::format("{} x {}", picture.width, picture.height),
+                 .where = source});
+  }
+  map.blocked.resize(static_cast<std::size_t>(map.rows) * map.cols);
+  for (int y = 0; y < map.rows * cell_pixels; ++y) {
+    for (int x = 0; x < map.cols * cell_pixels; ++x) {
+      if (picture.pixels[static_cast<std::size_t>(y) * picture.width + x] >= kHalf) continue;
+      map.blocked[map.node({y / cell_pixels, x / cell_pixels})] = true;
+    }
+  }
+  if (std::find(map.blocked.begin(), map.blocked.end(), false) == map.blocked.end()) {
+    throw Error({.what = "the picture has no free cell", .expected = "cells brighter than half", .where = source});
+  }
+  return map;
+}
+
+std::string pixels_of(const GridMap& map) {
+  std::string pixels(map.blocked.size(), static_cast<char>(kWhite));
+  for (std::size_t node = 0; node < pixels.size(); ++node) {
+    if (map.blocked[node]) pixels[node] = 0;
+  }
+  return pixels;
+}
+
+}  // namespace
+
+bool is_png(std::string_view bytes) {
+  return bytes.starts_with(kPngMagic);
+}
+
+bool is_netpbm(std::string_view bytes) {
+  return bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6' &&
+         (bytes[2] == '\n' || bytes[2] == '\r' || bytes.substr(2).starts_with(" #"));
+}
+
+GreyPicture read_png(std::string_view bytes, const std::string& source) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  const auto fail = [&] {
+    const std::string complaint = image.message;
+    png_image_free(&image);
+    throw Error({.what = fmt::format("a PNG file that cannot be read ({})", escaped(complaint)), .where = source});
+  };
+  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) fail();
+  const std::int64_t width = image.width;
+  const std::int64_t height = image.height;
+  if (width > kMostPixels / height) png_image_free(&image);
+  check_size(width, height, source);
+  image.format = PNG_FORMAT_GRAY;
+  GreyPicture picture{.width = static_cast<int>(width), .height = static_cast<int>(height), .pixels = {}};
+  picture.pixels.resize(static_cast<std::size_t>(width) * height);
+  const png_color white = {kWhite, kWhite, kWhite};
+  if (png_image_finish_read(&image, &white, picture.pixels.data(), 0, nullptr) == 0) fail();
+  return picture;
+}
+
+GreyPicture read_netpbm(std::string_view bytes, const std::string& source) {
+  return NetpbmReader(bytes, source).read();
+}
+
+GreyPicture read_picture(std::string_view bytes, const std::string& source) {
+  if (is_png(bytes)) return read_png(bytes, source);
+  if (is_netpbm(bytes)) return read_netpbm(bytes, source);
+  throw Error({.what = "not a picture", .expected = "PNG, PGM, PBM or PPM", .where = source});
+}
+
+GridMap parse_png_map(std::string_view bytes, const std::string& source, const MapOptions& options) {
+  return grid_of(read_png(bytes, source), options.cell_pixels, source);
+}
+
+GridMap parse_netpbm_map(std::string_view bytes, const std::string& source, const MapOptions& options) {
+  return grid_of(read_netpbm(bytes, source), options.cell_pixels, source);
+}
+
+std::string format_png_map(const GridMap& map) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(map.cols);
+  image.height = static_cast<png_uint_32>(map.rows);
+  image.format = PNG_FORMAT_GRAY;
+  const std::string pixels = pixels_of(map);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0) {
+    throw Error({.what = fmt::format("the map cannot be written as PNG ({})", escaped(image.message))});
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+std::string format_pgm_map(const GridMap& map) {
+  return fmt::format("P5\n{} {}\n255\n", map.cols, map.rows) + pixels_of(map);
+}
+
+}  // namespace graphdrl
