@@ -9,6 +9,13 @@ find_package(yaml-cpp REQUIRED)
 find_package(Protobuf REQUIRED)
 find_package(Boost 1.74 REQUIRED)
 
+# Cairo brings no CMake package.
+find_path(CAIRO_INCLUDE_DIR cairo.h PATH_SUFFIXES cairo REQUIRED)
+find_library(CAIRO_LIBRARY cairo REQUIRED)
+add_library(graphdrl_cairo INTERFACE)
+target_include_directories(graphdrl_cairo SYSTEM INTERFACE ${CAIRO_INCLUDE_DIR})
+target_link_libraries(graphdrl_cairo INTERFACE ${CAIRO_LIBRARY})
+
 # CLP (EPL-2.0) is optional: without it bounds are those of planners/bound.h. Not by pkg-config's flags, which would link
 # the programs with a LAPACK of the linker's choice.
 if(GRAPHDRL_CLP)

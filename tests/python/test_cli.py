@@ -124,8 +124,53 @@ def test_maps_info_and_show(run, tmp_path):
     process = run("graphdrl", "maps", "show", "paper:a", "--walk", "0,1,2", "--svg", tmp_path / "a.svg")
     assert process.returncode == 0
     assert process.stdout.splitlines()[1:] == ["0 1 2 # .", ". # # # .", ". # . . .", ". # . . .", ". . . . ."]
-    assert (tmp_path / "a.svg").read_text().count("<circle") == 26
+    assert (tmp_path / "a.svg").read_text().count("<circle") == 25 + 2 + 1  # the start, the legend
     assert run("graphdrl", "maps", "show", "paper:a").stdout == "paper:a: 19 valid nodes\n" + MAP_A
+
+
+def test_a_plan_goes_out_and_comes_back(run, tmp_path):
+    endings = [".json", ".csv", ".svg", ".anim.svg", ".png", ".graphml", ".dot"]
+    outs = [option for ending in endings for option in ("--out", tmp_path / ("a" + ending))]
+    plan = json.loads(run("graphdrl", "plan", "paper:a", "--budget", "12", "--json", *outs).stdout)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted("a" + ending for ending in endings)
+    for ending in (".json", ".csv"):
+        found = json.loads(run("graphdrl", "check", "paper:a", tmp_path / ("a" + ending), "--budget", "12", "--json",
+                               "--out", tmp_path / "again.csv").stdout)  # fmt: skip
+        for key in ("walk", "visited", "cost", "budget", "coverage"):
+            assert found[key] == plan[key], key
+        assert found["upper_bound"] >= plan["upper_bound"]
+        assert (tmp_path / "again.csv").read_text() == (tmp_path / "a.csv").read_text()
+    text = run("graphdrl", "check", "paper:a", tmp_path / "a.csv").stdout
+    assert f"visited {plan['visited']} of 19 nodes" in text
+    nodes = json.loads(run("graphdrl", "maps", "info", tmp_path / "a.graphml", "--json").stdout)
+    assert (nodes["nodes"], nodes["valid_nodes"], nodes["edges"]) == (25, 19, 40)
+
+
+def test_a_robot_plans_on_a_map_of_its_own(run, tmp_path):
+    """A ROS map of 19.2 m a side, of two rooms and a door, in cells of half a metre."""
+    side = 384
+    rows = [bytearray(b"\xfe" * side) for _ in range(side)]
+    for i in range(side):
+        for j in (*range(4), *range(side - 4, side)):
+            rows[j][i] = rows[i][j] = 0
+        for j in range(190, 196):
+            rows[i][j] = 0 if not 100 < i < 140 else 254
+    (tmp_path / "floor.pgm").write_bytes(b"P5\n%d %d\n255\n" % (side, side) + b"".join(rows))
+    (tmp_path / "floor.yaml").write_text("image: floor.pgm\nresolution: 0.05\norigin: [-9.6, -9.6, 0.0]\nnegate: 0\n")
+    options = ["--cell-size", "0.5", "--robot-radius", "0.3", "--connectivity", "8"]
+    process = run("graphdrl", "plan", tmp_path / "floor.yaml", "--budget", "1.1x", *options, "--json",
+                  "--out", tmp_path / "path.yaml", "--out", tmp_path / "path.geojson")  # fmt: skip
+    assert "of free ground" in process.stderr
+    plan = json.loads(process.stdout)
+    assert plan["unit"] == "m"
+    assert plan["coverage"] > 95
+    places = plan["walk_places"]
+    assert all(-9.6 < x < 9.6 and -9.6 < y < 9.6 for x, y in places)
+    for (x, y), (next_x, next_y) in zip(places, places[1:]):
+        assert max(abs(x - next_x), abs(y - next_y)) == pytest.approx(0.5)
+    crossing = [y for (x, y), (next_x, _) in zip(places, places[1:]) if (x < 0) != (next_x < 0)]
+    assert crossing and all(2.6 < y < 4.6 for y in crossing)  # through the door
+    assert (tmp_path / "path.yaml").read_text().count("position") == len(places)
 
 
 def test_maps_convert_keeps_the_map(run, tmp_path):
@@ -155,6 +200,8 @@ def bad_inputs(tmp_path, policy):
     (tmp_path / "strange.txt").write_text("..x\n...\n")
     (tmp_path / "ragged.txt").write_text("...\n..\n")
     (tmp_path / "full.txt").write_text("##\n##\n")
+    (tmp_path / "walk.csv").write_text("node\n0\n2\n")
+    (tmp_path / "home.csv").write_text("0\n1\n0\n")
     content = policy.read_bytes()
     (tmp_path / "cut.safetensors").write_bytes(content[:-1000])
     (tmp_path / "shape.safetensors").write_bytes(content.replace(b"[192,64]", b"[64,192]", 1))
@@ -238,7 +285,17 @@ def bad_inputs(tmp_path, policy):
         (["plan", "paper:a", "--budget", "9", "--time-limit", "nan"], "bad time limit"),
         (["plan", tmp_path / "cost.json", "--budget", "9"], 'links[0]: bad "weight"'),
         (["plan", tmp_path / "graph.json", "--budget", "9", "--policy", policy], "directions, on grid maps only"),
-        (["maps", "show", tmp_path / "graph.json"], "only grid maps can be drawn"),
+        (["plan", "paper:a", "--budget", "9", "--out", tmp_path / "a.pdf"], "no plan is written in a file with this"),
+        (["plan", "paper:a", "--budget", "9", "--out", tmp_path / "a.geojson"], "needs coordinates"),
+        (["plan", "paper:a", "--budget", "9", "--connectivity", "6"], "--connectivity"),
+        (["plan", "paper:a", "--budget", "9", "--cut-corners"], "--connectivity"),
+        (["plan", "paper:a", "--budget", "9", "--robot-radius", "-1"], "a number above 0"),
+        (["plan", "paper:a", "--budget", "9", "--cell-size", "2"], "--cell-size goes with maps that say how large"),
+        (["maps", "info", tmp_path / "graph.json", "--cost-attribute", "speed"], "no edge has this attribute"),
+        (["check", "paper:a", tmp_path / "nowhere"], "nowhere"),
+        (["check", "paper:a", tmp_path / "walk.csv"], "not a walk: no edge leads from node 0 to node 2, step 1"),
+        (["check", "paper:a", tmp_path / "home.csv", "--budget", "1"], "the walk costs more than the budget"),
+        (["check", "paper:a", tmp_path / "home.csv", "--end", "1"], "the walk ends elsewhere"),
         (["train", "--maps", tmp_path / "graph.json", "--out", tmp_path / "new"], "need a grid map"),
         (["train", "--device", "tpu", "--out", tmp_path / "new"], "--device"),
         (["maps", "show", "paper:a", "--walk", "0,25"], "no such step"),

@@ -21,10 +21,12 @@
 #include "graphdrl/io/node_link.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/map_drawing.h"
+#include "graphdrl/report/picture.h"
 
 namespace graphdrl {
 namespace {
 
+constexpr double kMostSpent = 1e300;  // walks that are shown cost what they cost
 constexpr double kBudgetStep = 1e-6;  // of a budget that visits all, where costs are no whole numbers
 
 struct MapsOptions {
@@ -32,6 +34,7 @@ struct MapsOptions {
   MapOptions reading;
   std::vector<NodeId> walk;
   std::string svg;
+  std::string png;
   bool json = false;
 };
 
@@ -156,7 +159,7 @@ void show_info(const MapsOptions& options) {
 
 void show_map(const MapsOptions& options) {
   const std::vector<World> worlds = load_worlds({options.map}, options.reading);
-  if (worlds.size() > 1 && (!options.walk.empty() || !options.svg.empty())) {
+  if (worlds.size() > 1 && (!options.walk.empty() || !options.svg.empty() || !options.png.empty())) {
     throw Error({.what = "a walk or a picture needs one map",
                  .expected = "one map",
                  .got = fmt::format("{} maps", worlds.size()),
@@ -164,17 +167,21 @@ void show_map(const MapsOptions& options) {
   }
   std::string text;
   for (const World& world : worlds) {
-    if (!world.is_grid()) throw Error({.what = "only grid maps can be drawn", .where = world.name()});
     std::string title = fmt::format("{}: {} valid nodes", world.name(), world.valid_count());
     if (!options.walk.empty()) {
-      Episode episode(world, {.budget = static_cast<double>(options.walk.size())});
+      Episode episode(world, {.budget = kMostSpent, .action_space = action_space_of(world)});
       follow_walk(episode, options.walk);
-      title += fmt::format(", {} visited in {} steps; numbers are steps of first visits", episode.visited_count(),
-                           options.walk.size() - 1);
+      title += fmt::format(", {} visited in {} steps", episode.visited_count(), options.walk.size() - 1);
     }
-    text += fmt::format("{}{}\n{}", text.empty() ? "" : "\n", title, draw_map_text(world, options.walk));
+    const bool numbers = world.has_cells() && !options.walk.empty();
+    text +=
+        fmt::format("{}{}{}\n", text.empty() ? "" : "\n", title, numbers ? "; numbers are steps of first visits" : "");
+    if (world.has_cells()) text += draw_map_text(world, options.walk);
+    if (options.svg.empty() && options.png.empty()) continue;
+    const Picture picture(world, options.walk, title, {});
+    if (!options.svg.empty()) write_file(options.svg, picture.svg());
+    if (!options.png.empty()) write_file(options.png, picture.png());
   }
-  if (!options.svg.empty()) write_file(options.svg, draw_map_svg(worlds.front(), options.walk));
   print_text(text);
 }
 
@@ -259,7 +266,8 @@ void add_maps_command(CLI::App& app) {
       ->delimiter(',')
       ->check(not_empty())
       ->type_name("IDS");
-  show->add_option("--svg", options->svg, "Also write the picture to this file")->type_name("FILE");
+  show->add_option("--svg", options->svg, "Also write the picture to this file")->check(not_empty())->type_name("FILE");
+  show->add_option("--png", options->png, "Likewise, as PNG")->check(not_empty())->type_name("FILE");
   show->callback([options] { show_map(*options); });
 
   CLI::App* const convert = maps->add_subcommand("convert", "Write a map in another format");

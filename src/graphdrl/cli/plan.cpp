@@ -17,6 +17,7 @@
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/report/map_drawing.h"
+#include "graphdrl/report/plan_files.h"
 #include "graphdrl/report/progress.h"
 
 namespace graphdrl {
@@ -27,7 +28,9 @@ constexpr double kBoundShare = 0.3;
 constexpr double kPlanShare = 0.97;
 constexpr double kProgressAfterS = 1;
 constexpr double kMostSeconds = 1e6;
-constexpr double kRounding = 1e-9;  // of sums of prizes
+constexpr std::size_t kLongestWalkPrinted = 2000;  // nodes
+constexpr std::size_t kWidestDrawing = 240;        // characters
+constexpr double kRounding = 1e-9;                 // of sums of prizes
 
 struct PlanOptions {
   std::string map;
@@ -39,15 +42,8 @@ struct PlanOptions {
   std::optional<std::int64_t> iterations;
   std::optional<double> time_limit_s;
   std::uint64_t seed = 1;
+  std::vector<std::string> out;
   bool json = false;
-};
-
-// A plan, and what is said beside it.
-struct Answer {
-  Plan plan;
-  int max_visited;  // by any walk, at most; where there are no prizes
-  int unreachable;  // valid nodes that no walk can reach, whatever it spends
-  double elapsed_s;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -92,7 +88,7 @@ void check_plan(const World& world, const Task& task, const Plan& plan) {
   if (!ends_well || episode.visited_count() != plan.visited) throw std::logic_error("the plan is not what it says");
 }
 
-Answer make_plan(const World& world, const Task& task, const PlanOptions& options) {
+PlanReport make_plan(const World& world, const Task& task, const PlanOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const auto deadline = [&](double share) -> Deadline {
     if (!options.time_limit_s) return std::nullopt;
@@ -101,7 +97,7 @@ Answer make_plan(const World& world, const Task& task, const PlanOptions& option
   };
   PlanDisplay display(world);
   const Report report = [&](const PlanProgress& progress) { display.show(progress); };
-  Answer answer{};
+  PlanReport answer{.world = world, .task = task, .policy = policy_label(options.policy), .plan = {}};
   const auto planner = make_planner(options.policy, options.seed);
   const bool bounds = planner != nullptr && planner->bounds();
   const double bound = bounds ? kNoLimit : max_prize(task, deadline(kBoundShare));
@@ -128,44 +124,7 @@ std::string name_of(const World& world, NodeId node) {
   return fmt::format("node {} (row {}, column {})", node, cell.row, cell.col);
 }
 
-Json to_json(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
-  const Plan& plan = answer.plan;
-  Json json;
-  json["map"] = world.name();
-  json["policy"] = policy_label(options.policy);
-  json["start"] = plan.walk.front();
-  json["end"] = task.ends_anywhere() ? Json() : Json(task.end);
-  json["budget"] = task.budget;
-  json["walk"] = plan.walk;
-  if (world.has_cells()) {
-    json["walk_cells"] = Json::array();
-    for (const NodeId node : plan.walk) {
-      const Cell cell = world.map()->cell(node);
-      json["walk_cells"].push_back({cell.row, cell.col});
-    }
-  }
-  if (!world.labels().empty()) {
-    json["walk_labels"] = Json::array();
-    for (const NodeId node : plan.walk) json["walk_labels"].push_back(world.labels()[node]);
-  }
-  json["visited"] = plan.visited;
-  json["coverage"] = 100.0 * plan.visited / world.valid_count();
-  if (world.has_prizes()) json["prize"] = plan.prize;
-  json["cost"] = plan.cost;
-  json["upper_bound"] = world.percent_of_all(plan.bound);
-  if (world.has_prizes()) {
-    json["max_prize"] = plan.bound;
-  } else {
-    json["max_visited"] = answer.max_visited;
-  }
-  json["gap"] = world.percent_of_all(plan.bound - plan.prize);
-  json["optimal"] = plan.optimal;
-  json["unreachable"] = answer.unreachable;
-  json["elapsed_s"] = answer.elapsed_s;
-  return json;
-}
-
-std::string format_bound(const World& world, const Answer& answer) {
+std::string format_bound(const World& world, const PlanReport& answer) {
   const Plan& plan = answer.plan;
   const char* const what = world.has_prizes() ? "is worth more" : "visits more";
   if (plan.optimal) return fmt::format("optimal  no walk {}\n", what);
@@ -175,7 +134,7 @@ std::string format_bound(const World& world, const Answer& answer) {
                      world.percent_of_all(plan.bound), world.percent_of_all(plan.bound - plan.prize));
 }
 
-std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const Answer& answer) {
+std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const PlanReport& answer) {
   const Plan& plan = answer.plan;
   std::string text =
       fmt::format("{}, {} from {}", world.name(), policy_label(options.policy), name_of(world, plan.walk.front()));
@@ -193,11 +152,16 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
                         answer.unreachable == 1 ? "" : "s");
   }
   std::vector<std::string> names;
+  if (plan.walk.size() > kLongestWalkPrinted) {
+    text += fmt::format("walk     {} steps; --out FILE or --json gives them\n", plan.walk.size() - 1);
+    return text;
+  }
   for (const NodeId node : plan.walk) {
     names.push_back(world.labels().empty() ? std::to_string(node) : escaped(world.labels()[node]));
   }
   text += fmt::format("walk     {}\n", fmt::join(names, " "));
-  if (world.has_cells()) text += "\n" + draw_map_text(world, plan.walk);
+  const std::size_t digits = std::to_string(plan.walk.size()).size() + 1;
+  if (world.has_cells() && world.map()->cols * digits <= kWidestDrawing) text += "\n" + draw_map_text(world, plan.walk);
   return text;
 }
 
@@ -249,10 +213,12 @@ void plan(PlanOptions options) {
   }
   const World world = load_one_world(options.map, options.reading);
   const Task task = task_of(world, options);
+  for (const std::string& file : options.out) check_plan_file(world, file);
   stop_planning_on_signals();
-  const Answer answer = make_plan(world, task, options);
+  const PlanReport answer = make_plan(world, task, options);
+  for (const std::string& file : options.out) write_plan(answer, file);
   if (options.json) {
-    print_json(to_json(world, task, options, answer));
+    print_json(plan_json(answer));
   } else {
     print_text(format_plan(world, task, options, answer));
   }
@@ -298,6 +264,12 @@ void add_plan_command(CLI::App& app) {
                    "others stop "
                    "with what they have")
       ->type_name("S");
+  command
+      ->add_option("--out", options->out,
+                   "Also write the plan to this file, in the format of its ending: " + plan_file_endings() +
+                       "; may be given again")
+      ->check(not_empty())
+      ->type_name("FILE");
   add_seed_option(*command, options->seed, "For search and for random policies");
   command->add_flag("--json", options->json, "Print one JSON document");
   add_map_options(*command, options->reading);

@@ -356,6 +356,10 @@ std::string dot_quoted(std::string_view text) {
 }
 
 std::string format_dot(const GraphMap& map) {
+  return format_dot(map, {});
+}
+
+std::string format_dot(const GraphMap& map, const NodeColumn& column) {
   const bool directed = map.graph.directed();
   std::string text = directed ? "digraph {\n" : "graph {\n";
   if (!map.places.unit.empty()) text += fmt::format("  graph [unit={}];\n", dot_quoted(map.places.unit));
@@ -370,6 +374,7 @@ std::string format_dot(const GraphMap& map) {
     if (!map.places.points.empty()) {
       add("pos", fmt::format("\"{},{}\"", map.places.points[node].x, map.places.points[node].y));
     }
+    if (!column.name.empty() && !column.values[node].empty()) add(column.name, dot_quoted(column.values[node]));
     text += attributes.empty() ? fmt::format("  {};\n", node) : fmt::format("  {} [{}];\n", node, attributes);
   }
   for (const Edge& edge : map.graph.edges()) {

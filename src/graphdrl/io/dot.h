@@ -18,6 +18,8 @@ GraphMap parse_dot(std::string_view text, const std::string& source, const MapOp
 
 // Ends with a line break. Keeps all but the task.
 std::string format_dot(const GraphMap& map);
+// The same with one more attribute.
+std::string format_dot(const GraphMap& map, const NodeColumn& column);
 
 // A text in quotes, as DOT writes it.
 std::string dot_quoted(std::string_view text);

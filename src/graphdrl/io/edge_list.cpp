@@ -6,6 +6,7 @@
 #include <array>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/csv.h"
 #include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/text.h"
 
@@ -14,67 +15,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kSourceNames = {"source", "from", "src", "u"};
 constexpr std::array<std::string_view, 4> kTargetNames = {"target", "to", "dst", "v"};
-constexpr int kNone = -1;
-
-bool is_comment(std::string_view line) {
-  line = trimmed(line);
-  return line.empty() || line.front() == '#' || line.front() == '%';
-}
-
-char separator_of(std::string_view line) {
-  for (const char separator : {',', ';', '\t'}) {
-    // A dictionary of networkx has commas of its own.
-    if (line.substr(0, line.find('{')).find(separator) != std::string_view::npos) return separator;
-  }
-  return ' ';
-}
-
-// The fields of a line. A quote that does not end gives no fields.
-std::vector<std::string> split(std::string_view line, char separator) {
-  std::vector<std::string> fields;
-  for (;;) {
-    line = trimmed(line);
-    if (separator == ' ' && line.empty()) return fields;
-    if (line.starts_with('{')) {
-      fields.emplace_back(line);
-      return fields;
-    }
-    std::string field;
-    if (line.starts_with('"')) {
-      std::size_t at = 1;
-      for (;; ++at) {
-        if (at >= line.size()) return {};
-        if (line[at] != '"') {
-          field += line[at];
-        } else if (at + 1 < line.size() && line[at + 1] == '"') {
-          field += line[at++];
-        } else {
-          break;
-        }
-      }
-      line = trimmed(line.substr(at + 1));
-      if (!line.empty() && separator != ' ' && line.front() != separator) return {};
-    } else {
-      const std::size_t end = separator == ' ' ? line.find_first_of(" \t") : line.find(separator);
-      field = trimmed(line.substr(0, end));
-      line.remove_prefix(std::min(end, line.size()));
-    }
-    fields.push_back(std::move(field));
-    if (separator == ' ') continue;
-    if (line.empty()) return fields;
-    line.remove_prefix(1);
-  }
-}
-
-// The first field of one of these names.
-int column_of(const std::vector<std::string>& fields, std::span<const std::string_view> names) {
-  for (const std::string_view name : names) {
-    const auto field =
-        std::find_if(fields.begin(), fields.end(), [&](const auto& one) { return same_name(one, name); });
-    if (field != fields.end()) return static_cast<int>(field - fields.begin());
-  }
-  return kNone;
-}
 
 // What a dictionary of Python has under the first of these names that it has; empty where it has none.
 std::string_view value_in_dictionary(std::string_view text, std::span<const std::string_view> names) {
@@ -98,7 +38,7 @@ class EdgeListReader {
     if (options.cost_attribute.empty()) return;
     cost_names_ = {options.cost_attribute};
     cost_name_ = options.cost_attribute;
-    cost_ = kNone;
+    cost_ = kNoColumn;
   }
 
   GraphMap read() {
@@ -106,7 +46,7 @@ class EdgeListReader {
     while (lines_.next()) {
       if (is_comment(lines_.line())) continue;
       if (first) separator_ = separator_of(lines_.line());
-      const std::vector<std::string> fields = split(lines_.line(), separator_);
+      const std::vector<std::string> fields = split_fields(lines_.line(), separator_);
       if (!first || !read_header(fields)) read_edge(fields);
       first = false;
     }
@@ -121,7 +61,7 @@ class EdgeListReader {
   bool read_header(const std::vector<std::string>& fields) {
     const int from = column_of(fields, kSourceNames);
     const int to = column_of(fields, kTargetNames);
-    if (from == kNone || to == kNone) return false;
+    if (from == kNoColumn || to == kNoColumn) return false;
     from_ = from;
     to_ = to;
     cost_ = column_of(fields, cost_names_);
@@ -139,7 +79,7 @@ class EdgeListReader {
     const NodeId from = builder_.node_or_new(fields[from_]);
     builder_.add_edge(from, builder_.node_or_new(fields[to_]), /*one_way=*/false);
     any_ = true;
-    std::string_view cost = cost_ != kNone && cost_ < count ? std::string_view(fields[cost_]) : std::string_view();
+    std::string_view cost = cost_ != kNoColumn && cost_ < count ? std::string_view(fields[cost_]) : std::string_view();
     if (fields.back().starts_with('{')) cost = value_in_dictionary(fields.back(), cost_names_);
     if (!cost.empty()) builder_.set_edge(cost_name_, cost);
   }
@@ -165,7 +105,7 @@ bool is_edge_list(std::string_view text) {
     if (is_comment(line)) continue;
     const bool printable =
         std::none_of(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' ' && c != '\t'; });
-    return printable && split(line, separator_of(line)).size() >= 2;
+    return printable && split_fields(line, separator_of(line)).size() >= 2;
   }
   return false;
 }

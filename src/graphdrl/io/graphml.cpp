@@ -147,6 +147,10 @@ GraphMap parse_graphml(std::string_view text, const std::string& source, const M
 }
 
 std::string format_graphml(const GraphMap& map) {
+  return format_graphml(map, {});
+}
+
+std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   declaration.append_attribute("version") = "1.0";
@@ -162,6 +166,7 @@ std::string format_graphml(const GraphMap& map) {
     append_key(root, "y", "node", "y", "double");
   }
   if (!map.places.unit.empty()) append_key(root, "unit", "graph", "unit", "string");
+  if (!column.name.empty()) append_key(root, column.name.c_str(), "node", column.name.c_str(), "string");
   if (map.graph.weighted()) append_key(root, "weight", "edge", "weight", "double");
   pugi::xml_node graph = root.append_child("graph");
   graph.append_attribute("edgedefault") = map.graph.directed() ? "directed" : "undirected";
@@ -172,6 +177,9 @@ std::string format_graphml(const GraphMap& map) {
     item.append_attribute("id") = id_of(node).c_str();
     if (map.blocked[node]) append_data(item, "blocked", "true");
     if (!map.prizes.empty()) append_data(item, "prize", fmt::format("{}", map.prizes[node]));
+    if (!column.name.empty() && !column.values[node].empty()) {
+      append_data(item, column.name.c_str(), column.values[node]);
+    }
     if (points.empty()) continue;
     append_data(item, "x", fmt::format("{}", points[node].x));
     append_data(item, "y", fmt::format("{}", points[node].y));

@@ -21,5 +21,7 @@ GraphMap parse_graphml(std::string_view text, const std::string& source, const M
 
 // Ends with a line break. Keeps all but the task.
 std::string format_graphml(const GraphMap& map);
+// The same with one more attribute.
+std::string format_graphml(const GraphMap& map, const NodeColumn& column);
 
 }  // namespace graphdrl

@@ -23,6 +23,12 @@ struct GraphMap {
   GivenTask task = {};
 };
 
+// An attribute of nodes that is not the map's own.
+struct NodeColumn {
+  std::string name = {};
+  std::vector<std::string> values = {};  // [N]; empty texts are left out
+};
+
 // {"directed": false, "nodes": [{"id": "a", "blocked": true, "prize": 3}, …], "links": [{"source": "a", "target": "b",
 // "weight": 2}, …]}
 //

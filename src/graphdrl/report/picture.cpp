@@ -1,0 +1,331 @@
+#include "graphdrl/report/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "graphdrl/report/layout.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr double kMargin = 24;
+constexpr double kTextSize = 13;
+constexpr double kLineHeight = 19;
+constexpr double kTitleHeight = 30;
+constexpr double kLeastWidth = 420;
+constexpr double kSide = 1000;  // of the map, in pixels, at most where its cells allow it
+
+constexpr int kFewCells = 200;  // drawn as nodes and edges
+constexpr double kFewCellsSpacing = 40;
+constexpr double kMostCellPixels = 24;
+constexpr double kLinePixels = 5;  // cells from this size on have the walk as a line, others are coloured themselves
+
+constexpr NodeId kMostWithLabels = 60;
+constexpr std::int64_t kMostEdgesDrawn = 300'000;
+constexpr std::int64_t kMostArrows = 400;
+constexpr int kWalkParts = 64;  // of one colour each
+constexpr std::size_t kMostMovingSteps = 200'000;
+
+constexpr Colour kPaper = {255, 255, 255};
+constexpr Colour kInk = {33, 38, 46};
+constexpr Colour kQuiet = {96, 105, 118};
+constexpr Colour kEdge = {196, 203, 212};
+constexpr Colour kFree = {244, 246, 248};
+constexpr Colour kVisited = {226, 232, 240};
+constexpr Colour kBlocked = {74, 81, 92};
+constexpr Colour kMissed = {250, 190, 140};
+constexpr Colour kMissedLine = {178, 84, 12};
+
+// The step at which each node was first visited; -1 where never.
+std::vector<int> first_visits(const World& world, std::span<const NodeId> walk) {
+  std::vector<int> steps(world.node_count(), -1);
+  for (std::size_t step = 0; step < walk.size(); ++step) {
+    if (steps[walk[step]] < 0) steps[walk[step]] = static_cast<int>(step);
+  }
+  return steps;
+}
+
+}  // namespace
+
+Picture::Picture(const World& world, std::span<const NodeId> walk, std::string title, std::vector<std::string> notes)
+    : world_(world),
+      walk_(walk.begin(), walk.end()),
+      title_(std::move(title)),
+      notes_(std::move(notes)),
+      first_visits_(first_visits(world, walk)) {
+  cells_ = world.has_cells() && world.node_count() > kFewCells;
+  if (world.has_cells()) {
+    place_cells();
+  } else {
+    place_nodes();
+  }
+}
+
+void Picture::place_cells() {
+  const GridMap& map = *world_.map();
+  const double size = std::floor(kSide / std::max(map.rows, map.cols));
+  spacing_ = cells_ ? std::clamp(size, 1.0, kMostCellPixels) : kFewCellsSpacing;
+  width_ = std::max(kLeastWidth, 2 * kMargin + spacing_ * map.cols);
+  map_bottom_ = kTitleHeight + spacing_ * map.rows;
+  const double left = (width_ - spacing_ * map.cols) / 2;
+  places_.reserve(static_cast<std::size_t>(world_.node_count()));
+  for (NodeId node = 0; node < world_.node_count(); ++node) {
+    const Cell cell = map.cell(node);
+    places_.push_back({left + spacing_ * (cell.col + 0.5), kTitleHeight + spacing_ * (cell.row + 0.5)});
+  }
+}
+
+void Picture::place_nodes() {
+  std::vector<Point> points;
+  if (world_.has_places()) {
+    for (NodeId node = 0; node < world_.node_count(); ++node) points.push_back(world_.place(node));
+  } else {
+    points = lay_out(world_.open());
+  }
+  double left = std::numeric_limits<double>::infinity();
+  double bottom = left;
+  double right = -left;
+  double top = -left;
+  for (const Point& point : points) {
+    left = std::min(left, point.x);
+    right = std::max(right, point.x);
+    bottom = std::min(bottom, point.y);
+    top = std::max(top, point.y);
+  }
+  // Away from the equator degrees of longitude are shorter than those of latitude.
+  const bool degrees = world_.unit() == "degrees";
+  const double stretch = degrees ? std::max(0.05, std::cos((bottom + top) / 2 * std::numbers::pi / 180)) : 1;
+  const double across = (right - left) * stretch;
+  const double up = top - bottom;
+  const double nodes = world_.node_count();
+  const double inner = std::clamp(90 * std::sqrt(nodes), 320.0, kSide);
+  const double scale = std::max(across, up) > 0 ? inner / std::max(across, up) : 1;
+  const double padding = kMargin + 10;
+  width_ = std::ceil(std::max(kLeastWidth, 2 * padding + scale * across));
+  map_bottom_ = kTitleHeight + 2 * padding + scale * up;
+  const double shift = (width_ - scale * across) / 2;
+  for (const Point& point : points) {
+    places_.push_back({shift + scale * stretch * (point.x - left), kTitleHeight + padding + scale * (top - point.y)});
+  }
+  spacing_ = std::sqrt(std::max(1.0, scale * across) * std::max(1.0, scale * up) / nodes);
+  spacing_ = std::clamp(std::max(spacing_, inner / nodes), 3.0, kFewCellsSpacing);
+}
+
+double Picture::height() const {
+  const double legend = walk_.empty() ? 0 : kLineHeight + 6;
+  return std::ceil(map_bottom_ + 14 + legend + kLineHeight * static_cast<double>(notes_.size()) + 10);
+}
+
+std::string Picture::description() const {
+  std::string text;
+  for (const std::string& note : notes_) text += note + ". ";
+  return text;
+}
+
+std::string Picture::svg() const {
+  const auto canvas = make_svg_canvas(width_, height(), title_, description());
+  draw(*canvas);
+  return canvas->finish();
+}
+
+std::string Picture::moving_svg() const {
+  const double steps = static_cast<double>(std::min(walk_.size(), kMostMovingSteps));
+  const auto canvas = make_svg_canvas(width_, height(), title_, description(), std::clamp(0.12 * steps, 4.0, 24.0));
+  draw(*canvas);
+  return canvas->finish();
+}
+
+std::string Picture::png() const {
+  const auto canvas = make_png_canvas(width_, height());
+  draw(*canvas);
+  return canvas->finish();
+}
+
+void Picture::draw(Canvas& canvas) const {
+  canvas.rectangle({0, 0}, width_, height(), kPaper);
+  canvas.text({width_ / 2, 20}, title_, kTextSize + 2, kInk, Anchor::kMiddle);
+  if (cells_) {
+    draw_cells(canvas);
+  } else {
+    draw_edges(canvas);
+    draw_nodes(canvas);
+  }
+  if (!walk_.empty()) draw_walk(canvas);
+  draw_legend(canvas);
+}
+
+Colour Picture::colour_at(std::size_t step) const {
+  const std::size_t last = std::max<std::size_t>(1, walk_.size() - 1);
+  return colour_of_share(static_cast<double>(step) / static_cast<double>(last));
+}
+
+void Picture::draw_cells(Canvas& canvas) const {
+  const GridMap& map = *world_.map();
+  std::array<Colour, 256> scale{};
+  for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = colour_of_share(static_cast<double>(i) / 255);
+  Bitmap bitmap{.width = map.cols, .height = map.rows, .pixels = {}};
+  bitmap.pixels.reserve(map.blocked.size());
+  const double last = std::max<double>(1, static_cast<double>(walk_.size()) - 1);
+  for (NodeId node = 0; node < world_.node_count(); ++node) {
+    const int visited = first_visits_[node];
+    const Colour by_step = scale[static_cast<std::size_t>(255 * std::max(visited, 0) / last)];
+    bitmap.pixels.push_back(world_.is_blocked(node)  ? kBlocked
+                            : walk_.empty()          ? kFree
+                            : visited < 0            ? kMissed
+                            : spacing_ < kLinePixels ? by_step
+                                                     : kVisited);
+  }
+  const Point first = places_.front();
+  canvas.bitmap(bitmap, {first.x - spacing_ / 2, first.y - spacing_ / 2}, spacing_ * map.cols);
+}
+
+void Picture::draw_edges(Canvas& canvas) const {
+  const Graph& graph = world_.graph();
+  if (graph.is_complete() || graph.edge_count() > kMostEdgesDrawn) return;
+  std::vector<Segment> open;
+  std::vector<Segment> closed;
+  for (const Edge& edge : graph.edges()) {
+    const bool blocked = world_.is_blocked(edge.a) || world_.is_blocked(edge.b);
+    (blocked ? closed : open).push_back({places_[edge.a], places_[edge.b]});
+  }
+  const double line = std::clamp(spacing_ / 20, 0.4, 2.0);
+  canvas.segments(closed, kVisited, line);
+  canvas.segments(open, kEdge, line);
+  if (!graph.directed() || graph.edge_count() > kMostArrows) return;
+  for (const Segment& segment : open) {
+    // In the middle, where they do not meet.
+    const Point middle{(segment.from.x + 2 * segment.to.x) / 3, (segment.from.y + 2 * segment.to.y) / 3};
+    const double angle = std::atan2(segment.to.y - segment.from.y, segment.to.x - segment.from.x);
+    std::array<Point, 3> corners{};
+    for (int i = 0; i < 3; ++i) {
+      const double turn = angle + (i == 0 ? 0 : i == 1 ? 2.6 : -2.6);
+      corners[i] = {middle.x + 5 * std::cos(turn), middle.y + 5 * std::sin(turn)};
+    }
+    canvas.polygon(corners, kEdge);
+  }
+}
+
+void Picture::draw_nodes(Canvas& canvas) const {
+  std::vector<Point> free;
+  std::vector<Point> visited;
+  std::vector<Point> missed;
+  std::vector<Point> blocked;
+  for (NodeId node = 0; node < world_.node_count(); ++node) {
+    auto& kind = world_.is_blocked(node) ? blocked : walk_.empty() ? free : first_visits_[node] < 0 ? missed : visited;
+    kind.push_back(places_[node]);
+  }
+  const double radius = std::clamp(spacing_ * 0.225, 1.0, 9.0);
+  const double line = std::clamp(radius / 6, 0.3, 1.5);
+  canvas.discs(blocked, {.radius = radius, .fill = kBlocked, .stroke = kInk, .stroke_width = line});
+  canvas.discs(free, {.radius = radius, .fill = kPaper, .stroke = kQuiet, .stroke_width = line});
+  canvas.discs(visited, {.radius = radius, .fill = kVisited, .stroke = kQuiet, .stroke_width = line});
+  canvas.discs(missed, {.radius = radius, .fill = kMissed, .stroke = kMissedLine, .stroke_width = line});
+  if (world_.labels().empty() || world_.node_count() > kMostWithLabels) return;
+  for (NodeId node = 0; node < world_.node_count(); ++node) {
+    canvas.text({places_[node].x, places_[node].y - radius - 4}, world_.labels()[node], 11, kInk, Anchor::kMiddle);
+  }
+}
+
+void Picture::draw_walk(Canvas& canvas) const {
+  const double line = std::clamp(spacing_ / 14, 0.8, 3.0);
+  const bool lines = !cells_ || spacing_ >= kLinePixels;
+  // A run over an edge that was walked before keeps beside the earlier ones.
+  std::map<std::pair<NodeId, NodeId>, int> runs;
+  const std::size_t steps = walk_.size() - 1;
+  Point from = places_[walk_.front()];
+  Point to = from;
+  Point last = from;
+  for (int part = 0; lines && part < kWalkParts; ++part) {
+    const std::size_t begin = steps * part / kWalkParts;
+    const std::size_t end = steps * (part + 1) / kWalkParts;
+    std::vector<Point> points;
+    for (std::size_t step = begin; step < end; ++step) {
+      if (walk_[step] == walk_[step + 1]) continue;  // a blocked move
+      const int run = runs[std::minmax(walk_[step], walk_[step + 1])]++;
+      const double lane = (run % 2 == 1 ? 1 : -1) * ((run + 1) / 2) * std::min(4.0, spacing_ / 6);  // 0, 1, -1, 2, …
+      const Point a = places_[walk_[step]];
+      const Point b = places_[walk_[step + 1]];
+      const double length = std::max(1e-9, std::hypot(b.x - a.x, b.y - a.y));
+      // To the same side whichever way the edge is walked.
+      const double side = walk_[step] < walk_[step + 1] ? lane : -lane;
+      const Point shift{-side * (b.y - a.y) / length, side * (b.x - a.x) / length};
+      from = {a.x + shift.x, a.y + shift.y};
+      to = {b.x + shift.x, b.y + shift.y};
+      if (points.empty() && step > 0) points.push_back(last);
+      points.push_back(from);
+      points.push_back(to);
+      last = to;
+    }
+    if (points.empty()) continue;
+    const double all = static_cast<double>(steps);
+    canvas.walk_part(points, colour_at((begin + end) / 2), line, static_cast<double>(begin) / all,
+                     static_cast<double>(end) / all);
+  }
+  const double radius = std::clamp(spacing_ * 0.3, 5.0, 12.0);
+  if (lines && steps > 0) draw_arrow_head(canvas, from, to);
+  const Point start = places_[walk_.front()];
+  canvas.discs({&start, 1}, {.radius = radius, .stroke = kPaper, .stroke_width = 5});
+  canvas.discs({&start, 1}, {.radius = radius, .stroke = colour_at(0), .stroke_width = 3});
+  if (lines && steps > 0) return;
+  const Point end = places_[walk_.back()];
+  canvas.discs({&end, 1}, {.radius = radius * 0.8, .fill = colour_at(steps), .stroke = kInk, .stroke_width = 2});
+}
+
+void Picture::draw_arrow_head(Canvas& canvas, Point from, Point to) const {
+  const double angle = std::atan2(to.y - from.y, to.x - from.x);
+  const double size = std::clamp(spacing_ / 4, 6.0, 11.0);
+  const auto triangle = [&](double length) {
+    std::array<Point, 3> corners{};
+    for (int i = 0; i < 3; ++i) {
+      const double turn = angle + (i == 0 ? 0 : i == 1 ? 2.5 : -2.5);
+      corners[i] = {to.x + length * std::cos(turn), to.y + length * std::sin(turn)};
+    }
+    return corners;
+  };
+  canvas.polygon(triangle(size + 2.5), kInk);
+  canvas.polygon(triangle(size), colour_at(walk_.size() - 1));
+}
+
+void Picture::draw_legend(Canvas& canvas) const {
+  double y = map_bottom_ + 20;
+  double x = kMargin;
+  const auto say = [&](const std::string& text) {
+    canvas.text({x, y}, text, kTextSize - 1, kQuiet, Anchor::kStart);
+    x += 6.6 * static_cast<double>(text.size()) + 16;
+  };
+  if (!walk_.empty()) {
+    const Point ring{x + 6, y - 4};
+    canvas.discs({&ring, 1}, {.radius = 5, .stroke = colour_at(0), .stroke_width = 3});
+    x += 18;
+    say("start");
+    for (int i = 0; i < 48; ++i) canvas.rectangle({x + 2.0 * i, y - 9}, 2.2, 10, colour_of_share(i / 47.0));
+    x += 104;
+    say("end");
+    const bool missed = std::any_of(world_.valid_nodes().begin(), world_.valid_nodes().end(),
+                                    [&](NodeId node) { return first_visits_[node] < 0; });
+    if (missed) {
+      canvas.rectangle({x, y - 9}, 10, 10, kMissed);
+      x += 16;
+      say("not visited");
+    }
+    if (world_.valid_count() < world_.node_count()) {
+      canvas.rectangle({x, y - 9}, 10, 10, kBlocked);
+      x += 16;
+      say("blocked");
+    }
+    y += kLineHeight + 4;
+  }
+  for (const std::string& note : notes_) {
+    canvas.text({kMargin, y}, note, kTextSize, kInk, Anchor::kStart);
+    y += kLineHeight;
+  }
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,54 @@
+// Pictures of any world, and of a walk on it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "graphdrl/env/world.h"
+#include "graphdrl/report/canvas.h"
+
+namespace graphdrl {
+
+// A grid of many cells is drawn as cells, in one bitmap; others as nodes and edges, where they lie, or laid out
+// [report/layout.h]. The walk's colour says when: from dark to light. Its start is a ring, its end an arrow head; where
+// it runs over an edge again it keeps beside. Nodes never visited are marked.
+class Picture {
+ public:
+  // The walk may be empty, is valid otherwise. title: a line above; notes: lines below.
+  Picture(const World& world, std::span<const NodeId> walk, std::string title, std::vector<std::string> notes);
+
+  std::string svg() const;
+  // One that draws the walk as time goes by.
+  std::string moving_svg() const;
+  std::string png() const;
+
+ private:
+  void place_cells();
+  void place_nodes();
+  double height() const;
+  std::string description() const;
+  void draw(Canvas& canvas) const;
+  void draw_cells(Canvas& canvas) const;
+  void draw_edges(Canvas& canvas) const;
+  void draw_nodes(Canvas& canvas) const;
+  void draw_walk(Canvas& canvas) const;
+  void draw_arrow_head(Canvas& canvas, Point from, Point to) const;
+  void draw_legend(Canvas& canvas) const;
+  Colour colour_at(std::size_t step) const;
+
+  World world_;
+  std::vector<NodeId> walk_;
+  std::string title_;
+  std::vector<std::string> notes_;
+  std::vector<int> first_visits_;  // [N], steps; -1 where never
+  bool cells_ = false;             // drawn as cells
+  double spacing_ = 1;             // pixels between neighbours, about
+  double width_ = 0;
+  double map_bottom_ = 0;
+  std::vector<Point> places_;  // [N], of centres
+};
+
+}  // namespace graphdrl

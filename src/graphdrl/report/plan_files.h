@@ -1,0 +1,43 @@
+// Plans as files, for whatever takes them further.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "graphdrl/planners/plan.h"
+
+namespace graphdrl {
+
+// A plan, and what is said beside it.
+struct PlanReport {
+  World world;
+  Task task;
+  std::string policy;  // as users name it
+  Plan plan;
+  int max_visited = 0;  // by any walk, at most; where there are no prizes
+  int unreachable = 0;  // valid nodes that no walk can reach, whatever it spends
+  double elapsed_s = 0;
+};
+
+// The document that `graphdrl plan --json` prints.
+nlohmann::ordered_json plan_json(const PlanReport& report);
+
+// Two or three lines: what it visits, what it costs, and the bound.
+std::vector<std::string> plan_summary(const PlanReport& report);
+
+// Throws Error where no plan is written in a file with this ending: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
+// nav_msgs/Path), .svg, .anim.svg or .png; and where the format needs coordinates that the world does not have.
+void check_plan_file(const World& world, const std::string& file);
+
+// Writes a plan in the format of the file's ending. Throws Error.
+void write_plan(const PlanReport& report, const std::string& file);
+
+// The endings, for help texts.
+std::string plan_file_endings();
+
+// The nodes of a walk in a file: the document above, an array of node ids, or lines with a node each, the first field
+// of CSV or, below a header, the column `node`, `id` or `label`. Nodes are named as for parse_node(). Throws Error,
+// naming the file and the line.
+std::vector<NodeId> read_walk(const World& world, const std::string& file);
+
+}  // namespace graphdrl

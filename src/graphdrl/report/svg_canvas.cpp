@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+#include <png.h>
+
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/utf8.h"
+#include "graphdrl/report/canvas.h"
+
+namespace graphdrl {
+namespace {
+
+std::string png_of(const Bitmap& bitmap) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(bitmap.width);
+  image.height = static_cast<png_uint_32>(bitmap.height);
+  image.format = PNG_FORMAT_RGB;
+  static_assert(sizeof(Colour) == 3);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string bytes(size, '\0');
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, bitmap.pixels.data(), 0, nullptr) == 0) {
+    throw Error({.what = fmt::format("the picture cannot be written ({})", escaped(image.message))});
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+std::string base64(const std::string& bytes) {
+  using namespace boost::archive::iterators;
+  using Letters = base64_from_binary<transform_width<std::string::const_iterator, 6, 8>>;
+  const std::size_t padding = (3 - bytes.size() % 3) % 3;
+  const std::string whole = bytes + std::string(padding, '\0');
+  std::string text(Letters(whole.begin()), Letters(whole.end()));
+  text.replace(text.size() - padding, padding, padding, '=');
+  return text;
+}
+
+// For texts and attributes of XML.
+std::string xml(std::string_view text) {
+  std::string result;
+  for (const char c : valid_utf8(text)) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c >= 0 && c < ' ' ? ' ' : c;  // XML has no other control characters
+    }
+  }
+  return result;
+}
+
+std::string points_of(std::span<const Point> points) {
+  std::string text;
+  for (const Point& point : points) text += fmt::format("{}{:.6g},{:.6g}", text.empty() ? "" : " ", point.x, point.y);
+  return text;
+}
+
+class SvgCanvas final : public Canvas {
+ public:
+  SvgCanvas(double width, double height, const std::string& title, const std::string& description,
+            std::optional<double> seconds)
+      : seconds_(seconds) {
+    text_ = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" viewBox=\"0 0 {0:g} {1:g}\" "
+        "role=\"img\" font-family=\"system-ui, sans-serif\">\n<title>{2}</title>\n<desc>{3}</desc>\n",
+        width, height, xml(title), xml(description));
+  }
+
+  void rectangle(Point corner, double width, double height, Colour fill) override {
+    text_ += fmt::format("<rect x=\"{:.6g}\" y=\"{:.6g}\" width=\"{:.6g}\" height=\"{:.6g}\" fill=\"{}\"/>\n", corner.x,
+                         corner.y, width, height, hex(fill));
+  }
+
+  void bitmap(const Bitmap& bitmap, Point corner, double width) override {
+    text_ += fmt::format(
+        "<image x=\"{:.6g}\" y=\"{:.6g}\" width=\"{:.6g}\" height=\"{:.6g}\" style=\"image-rendering: pixelated\" "
+        "href=\"data:image/png;base64,{}\"/>\n",
+        corner.x, corner.y, width, width * bitmap.height / bitmap.width, base64(png_of(bitmap)));
+  }
+
+  void segments(std::span<const Segment> segments, Colour colour, double width) override {
+    if (segments.empty()) return;
+    text_ += fmt::format("<path stroke=\"{}\" stroke-width=\"{:.6g}\" fill=\"none\" d=\"", hex(colour), width);
+    for (const Segment& segment : segments) {
+      text_ += fmt::format("M{:.6g} {:.6g}L{:.6g} {:.6g}", segment.from.x, segment.from.y, segment.to.x, segment.to.y);
+    }
+    text_ += "\"/>\n";
+  }
+
+  void discs(std::span<const Point> centres, const Disc& disc) override {
+    if (centres.empty()) return;
+    text_ += fmt::format("<g fill=\"{}\"", disc.fill ? hex(*disc.fill) : "none");
+    if (disc.stroke)
+      text_ += fmt::format(" stroke=\"{}\" stroke-width=\"{:.6g}\"", hex(*disc.stroke), disc.stroke_width);
+    text_ += ">\n";
+    for (const Point& centre : centres) {
+      text_ += fmt::format("<circle cx=\"{:.6g}\" cy=\"{:.6g}\" r=\"{:.6g}\"/>\n", centre.x, centre.y, disc.radius);
+    }
+    text_ += "</g>\n";
+  }
+
+  void polygon(std::span<const Point> corners, Colour fill) override {
+    text_ += fmt::format("<polygon points=\"{}\" fill=\"{}\"/>\n", points_of(corners), hex(fill));
+  }
+
+  void text(Point at, std::string_view text, double size, Colour colour, Anchor anchor) override {
+    const char* const anchors[] = {"start", "middle", "end"};
+    text_ +=
+        fmt::format("<text x=\"{:.6g}\" y=\"{:.6g}\" font-size=\"{:.6g}\" fill=\"{}\" text-anchor=\"{}\">{}</text>\n",
+                    at.x, at.y, size, hex(colour), anchors[static_cast<int>(anchor)], xml(text));
+  }
+
+  void walk_part(std::span<const Point> points, Colour colour, double width, double begin, double end) override {
+    std::string moving;
+    if (seconds_) {
+      // Drawn from its begin to its end, and left there until all begins again.
+      constexpr double kShown = 0.9;  // of the time: then the whole picture stays for a while
+      styles_ +=
+          fmt::format("@keyframes w{0}{{0%,{1:.4g}%{{stroke-dashoffset:1.01}}{2:.4g}%,100%{{stroke-dashoffset:0}}}}\n",
+                      parts_, 100 * kShown * begin, 100 * kShown * end);
+      moving = fmt::format(" pathLength=\"1\" class=\"walk\" style=\"animation-name:w{}\"", parts_);
+    }
+    ++parts_;
+    text_ += fmt::format(
+        "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{:.6g}\" stroke-linejoin=\"round\" "
+        "stroke-linecap=\"{}\"{}/>\n",
+        points_of(points), hex(colour), width, seconds_ ? "butt" : "round", moving);
+  }
+
+  std::string finish() override {
+    if (seconds_) {
+      text_ += fmt::format(
+          "<style>\n@media (prefers-reduced-motion: no-preference) {{\n.walk{{stroke-dasharray:1.01;animation:{:g}s "
+          "linear "
+          "infinite}}\n{}}}\n</style>\n",
+          *seconds_, styles_);
+    }
+    return text_ + "</svg>\n";
+  }
+
+ private:
+  std::string text_;
+  std::optional<double> seconds_;
+  std::string styles_;
+  int parts_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Canvas> make_svg_canvas(double width, double height, const std::string& title,
+                                        const std::string& description, std::optional<double> seconds) {
+  return std::make_unique<SvgCanvas>(width, height, title, description, seconds);
+}
+
+}  // namespace graphdrl

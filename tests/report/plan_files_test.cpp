@@ -1,0 +1,108 @@
+#include "graphdrl/report/plan_files.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "graphdrl/io/file.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+World labelled_world() {
+  const std::vector<Edge> edges = {{0, 1, 2.5}, {1, 2, 1}};
+  return World("map", Graph::from_edges(3, edges), std::vector<bool>(3), {"a, \"b\"", "7", "<c>"}, {}, {},
+               {.points = {{0, 0}, {0, 2}, {-1, 2}}, .unit = "m"});
+}
+
+PlanReport report_of(const World& world, std::vector<NodeId> walk) {
+  const Task task{.view = world, .start = walk.front(), .budget = 10};
+  PlanReport report{.world = world, .task = task, .policy = "search", .plan = plan_of_walk(task, std::move(walk))};
+  report.plan.bound = 3;
+  report.max_visited = 3;
+  return report;
+}
+
+class PlanFiles : public ::testing::Test {
+ protected:
+  std::string written(const PlanReport& report, const std::string& name) {
+    write_plan(report, (folder_ / name).string());
+    return read_file(folder_ / name);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(PlanFiles, CsvHasEveryStep) {
+  EXPECT_EQ(written(report_of(labelled_world(), {0, 1, 0}), "a.csv"),
+            "step,node,label,x,y,cost,visited\n0,0,\"a, \"\"b\"\"\",0,0,0,1\n1,1,7,0,2,2.5,2\n2,0,\"a, "
+            "\"\"b\"\"\",0,0,5,2\n");
+  EXPECT_EQ(written(report_of(grid_world("..\n#.\n"), {0, 0, 1}), "b.csv"),
+            "step,node,row,column,cost,visited\n0,0,0,0,0,1\n1,0,0,0,1,1\n2,1,0,1,2,2\n");
+}
+
+TEST_F(PlanFiles, RosPathLooksAhead) {
+  const std::string path = written(report_of(labelled_world(), {0, 1, 2}), "a.yaml");
+  const double half = std::numbers::sqrt2 / 2;
+  EXPECT_THAT(path,
+              HasSubstr(fmt::format("position: {{x: 0, y: 0, z: 0.0}}\n      orientation: {{x: 0.0, y: 0.0, z: {}",
+                                    std::sin(std::numbers::pi / 4))));
+  EXPECT_NEAR(half, std::sin(std::numbers::pi / 4), 1e-12);
+  EXPECT_THAT(path, HasSubstr("position: {x: -1, y: 2, z: 0.0}\n      orientation: {x: 0.0, y: 0.0, z: 1, w: 6"));
+}
+
+TEST_F(PlanFiles, GeoJsonHasALineAndThePoints) {
+  const auto json = nlohmann::json::parse(written(report_of(labelled_world(), {0, 1}), "a.geojson"));
+  EXPECT_EQ(json["features"].size(), 4u);
+  EXPECT_EQ(json["features"][0]["geometry"]["coordinates"].dump(), "[[0.0,0.0],[0.0,2.0]]");
+  EXPECT_EQ(json["features"][2]["properties"]["visit_order"], 1);
+  EXPECT_TRUE(json["features"][3]["properties"]["visit_order"].is_null());
+}
+
+TEST_F(PlanFiles, GraphsHaveTheOrderOfVisits) {
+  const PlanReport report = report_of(labelled_world(), {0, 1, 0});
+  EXPECT_THAT(written(report, "a.graphml"), HasSubstr("<data key=\"visit_order\">1</data>"));
+  EXPECT_THAT(written(report, "a.dot"),
+              HasSubstr("1 [label=\"7\", pos=\"0,2\", visit_order=\"1\"];\n  2 [label=\"<c>\", pos"));
+}
+
+TEST_F(PlanFiles, RefuseWhatTheyCannotHold) {
+  const World grid = grid_world("..\n");
+  EXPECT_THAT(error_of([&] { check_plan_file(grid, "a.pdf"); }), HasSubstr("expected .json, .csv"));
+  EXPECT_THAT(error_of([&] { check_plan_file(grid, "a.geojson"); }), HasSubstr("needs coordinates"));
+  EXPECT_THAT(error_of([&] { check_plan_file(grid, "a.yaml"); }), HasSubstr("needs coordinates"));
+  EXPECT_EQ(error_of([&] { check_plan_file(grid, "a.anim.svg"); }), "");
+}
+
+TEST_F(PlanFiles, WalksAreReadBack) {
+  const World world = labelled_world();
+  const PlanReport report = report_of(world, {0, 1, 2, 1});
+  for (const char* const name : {"a.csv", "a.json"}) {
+    written(report, name);
+    EXPECT_THAT(read_walk(world, (folder_ / name).string()), ElementsAre(0, 1, 2, 1)) << name;
+  }
+  const auto read = [&](const std::string& text) {
+    write_file(folder_ / "walk", text);
+    return read_walk(world, (folder_ / "walk").string());
+  };
+  EXPECT_THAT(read("\"a, \"\"b\"\"\"\n7\n<c>\n"), ElementsAre(0, 1, 2));
+  EXPECT_THAT(read("cost,label\n1,7\n2,<c>\n"), ElementsAre(1, 2));
+  EXPECT_THAT(read("[0, \"7\", 2]"), ElementsAre(0, 1, 2));
+  EXPECT_THAT(read("# comment\n#0\n7\n"), ElementsAre(1));
+  EXPECT_THAT(error_of([&] { read(""); }), HasSubstr("the walk is empty"));
+  EXPECT_THAT(error_of([&] { read("7\nnowhere\n"); }), HasSubstr("walk:2: node outside the map"));
+  EXPECT_THAT(error_of([&] { read("cost,label\n1\n"); }), HasSubstr("walk:2: no node"));
+  EXPECT_THAT(error_of([&] { read("{\"walk\": 3}"); }), HasSubstr("no walk"));
+  EXPECT_THAT(error_of([&] { read("[1.5]"); }), HasSubstr("not a node"));
+  EXPECT_THAT(error_of([&] { read("[9]"); }), HasSubstr("step 0 outside the map"));
+}
+
+}  // namespace
+}  // namespace graphdrl
