@@ -13,7 +13,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of sums of prizes
+constexpr double kSumRounding = 1e-9;  // of sums of prizes
 
 struct CheckOptions {
   std::string map;
@@ -61,7 +61,7 @@ PlanReport check(const World& world, const CheckOptions& options) {
   }
   PlanReport report{.world = world, .task = task, .policy = options.walk, .plan = plan_of_walk(task, walk)};
   report.plan.bound = max_prize(task);
-  report.plan.optimal = report.plan.prize >= report.plan.bound * (1 - kRounding);
+  report.plan.optimal = report.plan.prize >= report.plan.bound * (1 - kSumRounding);
   if (report.plan.optimal) report.plan.bound = report.plan.prize;
   if (!world.has_prizes()) report.max_visited = static_cast<int>(report.plan.bound);
   return report;

@@ -16,8 +16,8 @@
 namespace graphdrl {
 namespace {
 
-constexpr int kMostDepth = 100;  // lists in each other
-constexpr std::string_view kSpace = " \t\r\n";
+constexpr int kMostListsDeep = 100;  // lists in each other
+constexpr std::string_view kBlanks = " \t\r\n";
 
 struct Entity {
   std::string_view name;
@@ -107,7 +107,7 @@ class GmlReader {
   // Lines whose first character is '#' are comments.
   void skip_space() {
     while (at_ < text_.size()) {
-      const std::size_t found = text_.find_first_not_of(kSpace, at_);
+      const std::size_t found = text_.find_first_not_of(kBlanks, at_);
       at_ = std::min(found, text_.size());
       const bool comment = at_ < text_.size() && text_[at_] == '#';
       if (!comment) return;
@@ -145,7 +145,7 @@ class GmlReader {
 
   void enter_list(std::string_view key) {
     if (!at_list()) fail(fmt::format("no list after `{}`", escaped(key)), "'['", text_.substr(at_, 20));
-    if (++depth_ > kMostDepth) fail("lists in lists, too deep", fmt::format("at most {}", kMostDepth));
+    if (++depth_ > kMostListsDeep) fail("lists in lists, too deep", fmt::format("at most {}", kMostListsDeep));
     ++at_;
   }
 
@@ -281,8 +281,8 @@ bool is_gml(std::string_view text) {
     break;
   }
   for (std::size_t at = rest.find("graph"); at != std::string_view::npos; at = rest.find("graph", at + 1)) {
-    const bool word = at == 0 || kSpace.find(rest[at - 1]) != std::string_view::npos;
-    const std::size_t next = rest.find_first_not_of(kSpace, at + 5);
+    const bool word = at == 0 || kBlanks.find(rest[at - 1]) != std::string_view::npos;
+    const std::size_t next = rest.find_first_not_of(kBlanks, at + 5);
     if (word && next != std::string_view::npos && rest[next] == '[') return true;
   }
   return false;

@@ -14,14 +14,14 @@ namespace {
 
 enum class Section { kNone, kVertices, kEdges, kArcs, kEdgesList, kArcsList, kMatrix };
 
-struct Keyword {
+struct SectionName {
   std::string_view name;
   Section section;
 };
-constexpr std::array kKeywords = {
-    Keyword{"*vertices", Section::kVertices}, Keyword{"*edges", Section::kEdges},
-    Keyword{"*arcs", Section::kArcs},         Keyword{"*edgeslist", Section::kEdgesList},
-    Keyword{"*arcslist", Section::kArcsList}, Keyword{"*matrix", Section::kMatrix},
+constexpr std::array kSectionNames = {
+    SectionName{"*vertices", Section::kVertices}, SectionName{"*edges", Section::kEdges},
+    SectionName{"*arcs", Section::kArcs},         SectionName{"*edgeslist", Section::kEdgesList},
+    SectionName{"*arcslist", Section::kArcsList}, SectionName{"*matrix", Section::kMatrix},
 };
 
 bool is_pajek_comment(std::string_view line) {
@@ -77,14 +77,14 @@ class PajekReader {
     if (same_name(words_.front(), "*network")) return;
     std::string_view word = words_.front();
     word = word.substr(0, word.find(':'));  // *Arcs :1 "name of a relation"
-    for (const Keyword& keyword : kKeywords) {
-      if (!same_name(keyword.name, word)) continue;
-      if (keyword.section == Section::kVertices) {
+    for (const SectionName& name : kSectionNames) {
+      if (!same_name(name.name, word)) continue;
+      if (name.section == Section::kVertices) {
         read_node_count();
       } else if (nodes_ == 0) {
         fail("no *Vertices before the first edge", "*Vertices N");
       }
-      section_ = keyword.section;
+      section_ = name.section;
       row_ = 0;
       return;
     }

@@ -5,9 +5,7 @@
 #include <vector>
 
 namespace graphdrl {
-namespace {
 
-// The step at which each node was first visited; -1 where never.
 std::vector<int> first_visits(const World& world, std::span<const NodeId> walk) {
   std::vector<int> steps(world.graph().node_count(), -1);
   for (std::size_t step = 0; step < walk.size(); ++step) {
@@ -15,8 +13,6 @@ std::vector<int> first_visits(const World& world, std::span<const NodeId> walk) 
   }
   return steps;
 }
-
-}  // namespace
 
 std::string draw_map_text(const World& world, std::span<const NodeId> walk) {
   const GridMap& map = *world.map();

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "graphdrl/report/layout.h"
+#include "graphdrl/report/map_drawing.h"
 
 namespace graphdrl {
 namespace {
@@ -42,15 +43,6 @@ constexpr Colour kVisited = {226, 232, 240};
 constexpr Colour kBlocked = {74, 81, 92};
 constexpr Colour kMissed = {250, 190, 140};
 constexpr Colour kMissedLine = {178, 84, 12};
-
-// The step at which each node was first visited; -1 where never.
-std::vector<int> first_visits(const World& world, std::span<const NodeId> walk) {
-  std::vector<int> steps(world.node_count(), -1);
-  for (std::size_t step = 0; step < walk.size(); ++step) {
-    if (steps[walk[step]] < 0) steps[walk[step]] = static_cast<int>(step);
-  }
-  return steps;
-}
 
 }  // namespace
 
