@@ -322,7 +322,8 @@ TEST(MapFormats, TakeCostsByAnyName) {
     const AnyMap map = format_of(text).read(text, "file", {.cost_attribute = name});
     return std::get<GraphMap>(map).graph.cost(0, 0);
   };
-  const std::string node_link = R"({"nodes":[{"id":0},{"id":1}],"links":[{"source":0,"target":1,"length":4,"time":7}]})";
+  const std::string node_link =
+      R"({"nodes":[{"id":0},{"id":1}],"links":[{"source":0,"target":1,"length":4,"time":7}]})";
   EXPECT_EQ(cost(node_link, ""), 4);
   EXPECT_EQ(cost(node_link, "time"), 7);
   EXPECT_THAT(error_of([&] { cost(node_link, "tiem"); }), HasSubstr("no edge has this attribute"));

@@ -13,7 +13,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr int kMostGraphsDeep = 100;                 // graphs in each other
+constexpr int kMostGraphsDeep = 100;            // graphs in each other
 constexpr std::int64_t kMostEdgesPerByte = 50;  // { a b } -> { c d } stands for four edges
 
 bool is_letter(char c) {
@@ -182,7 +182,8 @@ class DotReader {
 
   void read_body(Scope& scope) {
     expect("{", "no graph");
-    if (++depth_ > kMostGraphsDeep) tokens_.fail("graphs within graphs, too deep", fmt::format("at most {}", kMostGraphsDeep));
+    if (++depth_ > kMostGraphsDeep)
+      tokens_.fail("graphs within graphs, too deep", fmt::format("at most {}", kMostGraphsDeep));
     while (!tokens_.is("}")) {
       read_statement(scope);
       if (tokens_.is(";") || tokens_.is(",")) tokens_.next();
