@@ -156,7 +156,8 @@ def test_a_robot_plans_on_a_map_of_its_own(run, tmp_path):
         for j in range(190, 196):
             rows[i][j] = 0 if not 100 < i < 140 else 254
     (tmp_path / "floor.pgm").write_bytes(b"P5\n%d %d\n255\n" % (side, side) + b"".join(rows))
-    (tmp_path / "floor.yaml").write_text("image: floor.pgm\nresolution: 0.05\norigin: [-9.6, -9.6, 0.0]\nnegate: 0\n")
+    yaml = "image: floor.pgm\nresolution: 0.05\norigin: [-9.6, -9.6, 0.0]\nnegate: 0\n"
+    (tmp_path / "floor.yaml").write_text(yaml)
     options = ["--cell-size", "0.5", "--robot-radius", "0.3", "--connectivity", "8"]
     process = run("graphdrl", "plan", tmp_path / "floor.yaml", "--budget", "1.1x", *options, "--json",
                   "--out", tmp_path / "path.yaml", "--out", tmp_path / "path.geojson")  # fmt: skip
