@@ -69,6 +69,7 @@ std::vector<Pair> pairs_of(const Graph& graph) {
 
 std::vector<Point> on_a_circle(NodeId count) {
   std::vector<Point> points;
+  points.reserve(static_cast<std::size_t>(count));
   for (NodeId node = 0; node < count; ++node) {
     const double angle = 2 * std::numbers::pi * node / count;
     points.push_back({std::sin(angle), std::cos(angle)});
@@ -87,6 +88,7 @@ std::vector<Point> lay_out(const Graph& graph) {
 
   Rng rng(kSeed);
   std::vector<Point> points;
+  points.reserve(static_cast<std::size_t>(count));
   const double side = std::sqrt(count);
   for (NodeId node = 0; node < count; ++node) points.push_back({side * rng.uniform(), side * rng.uniform()});
   double longest = 1;
