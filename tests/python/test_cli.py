@@ -303,7 +303,7 @@ def bad_inputs(tmp_path, policy):
         (["maps", "show", "paper:a", "--walk", "0,b"], "--walk"),
         (["maps", "show", "paper:a", "--svg", tmp_path / "nowhere" / "a.svg"], "cannot write the file"),
         (["maps", "show", "paper:z"], "no such map"),
-        (["maps", "convert", "paper:a", "--out", tmp_path / "a.gr"], ".json, .graphml, .png, .pgm, .map, .dot, .gml, .txt"),
+        (["maps", "convert", "paper:a", "--out", tmp_path / "a.gr"], ".json, .graphml, .png, .pgm, .map, .dot, .gml"),
         (["maps", "convert", tmp_path / "graph.json", "--out", tmp_path / "a.map"], "this format holds grids only"),
         (["maps", "convert", "paper", "--out", tmp_path / "a.map"], "more than one map"),
         (["maps", "show", "paper:a", "--walk", ""], "--walk"),
