@@ -16,6 +16,16 @@ add_library(graphdrl_cairo INTERFACE)
 target_include_directories(graphdrl_cairo SYSTEM INTERFACE ${CAIRO_INCLUDE_DIR})
 target_link_libraries(graphdrl_cairo INTERFACE ${CAIRO_LIBRARY})
 
+# Neither does cpp-httplib.
+find_path(HTTPLIB_INCLUDE_DIR httplib.h REQUIRED)
+find_library(HTTPLIB_LIBRARY cpp-httplib REQUIRED)
+add_library(graphdrl_httplib INTERFACE)
+target_include_directories(graphdrl_httplib SYSTEM INTERFACE ${HTTPLIB_INCLUDE_DIR})
+target_link_libraries(graphdrl_httplib INTERFACE ${HTTPLIB_LIBRARY})
+
+# Chart.js, for the report page.
+find_file(CHART_LIBRARY chart.min.js PATHS /usr/share/javascript/chart.js REQUIRED)
+
 # CLP (EPL-2.0) is optional: without it bounds are those of planners/bound.h. Not by pkg-config's flags, which would link
 # the programs with a LAPACK of the linker's choice.
 if(GRAPHDRL_CLP)

@@ -1,5 +1,10 @@
-# Writes OUTPUT, a C++ source that holds the bytes of the file INPUT as NAME() of the header HEADER.
-file(READ ${INPUT} bytes HEX)
+# Writes OUTPUT, a C++ source that holds the bytes of the files INPUT, one after the other, as NAME() of the header
+# HEADER.
+set(bytes "")
+foreach(file ${INPUT})
+  file(READ ${file} more HEX)
+  string(APPEND bytes "${more}")
+endforeach()
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "\\\\x\\1" bytes "${bytes}")
 # One literal per 64 bytes, joined by the compiler.
 string(REPEAT "...." 64 line)

@@ -86,11 +86,11 @@ TEST_F(PlanFiles, WalksAreReadBack) {
   const PlanReport report = report_of(world, {0, 1, 2, 1});
   for (const char* const name : {"a.csv", "a.json"}) {
     written(report, name);
-    EXPECT_THAT(read_walk(world, (folder_ / name).string()), ElementsAre(0, 1, 2, 1)) << name;
+    EXPECT_THAT(read_plan(world, (folder_ / name).string()).plan.walk, ElementsAre(0, 1, 2, 1)) << name;
   }
   const auto read = [&](const std::string& text) {
     write_file(folder_ / "walk", text);
-    return read_walk(world, (folder_ / "walk").string());
+    return read_plan(world, (folder_ / "walk").string()).plan.walk;
   };
   EXPECT_THAT(read("\"a, \"\"b\"\"\"\n7\n<c>\n"), ElementsAre(0, 1, 2));
   EXPECT_THAT(read("cost,label\n1,7\n2,<c>\n"), ElementsAre(1, 2));

@@ -25,41 +25,16 @@ struct CheckOptions {
   bool json = false;
 };
 
-// Throws Error where a step of the walk follows no edge.
-void check_steps(const World& world, const std::vector<NodeId>& walk, const std::string& file) {
-  const auto name = [&](NodeId node) {
-    return world.labels().empty() ? fmt::format("node {}", node) : in_quotes(world.labels()[node]);
-  };
-  for (std::size_t i = 1; i < walk.size(); ++i) {
-    const bool stays = walk[i] == walk[i - 1] && world.is_grid();  // a blocked move
-    if (stays || world.open().index_of(walk[i - 1], walk[i]) >= 0) continue;
-    throw Error(
-        {.what = fmt::format("not a walk: no edge leads from {} to {}, step {}", name(walk[i - 1]), name(walk[i]), i),
-         .where = file});
-  }
-}
-
 PlanReport check(const World& world, const CheckOptions& options) {
-  const std::vector<NodeId> walk = read_walk(world, options.walk);
-  check_steps(world, walk, options.walk);
-  Task task{.view = world, .start = walk.front(), .budget = 0, .end = kNoNode};
-  const double cost = plan_of_walk(task, walk).cost;
+  PlanReport report = read_plan(world, options.walk);
+  Task& task = report.task;
   const GivenTask& given = world.given();
-  task.budget = !options.budget.empty() ? Budget::parse(options.budget).cost_in(world) : given.budget.value_or(cost);
-  task.end = options.end.empty() ? given.end : parse_end(world, options.end).of(task.start);
-  if (cost > task.limit()) {
-    throw Error({.what = "the walk costs more than the budget",
-                 .expected = fmt::format("at most {:g}", task.budget),
-                 .got = fmt::format("{:g}", cost),
-                 .where = options.walk});
-  }
-  if (!task.ends_anywhere() && walk.back() != task.end) {
-    throw Error({.what = "the walk ends elsewhere",
-                 .expected = fmt::format("node {}", task.end),
-                 .got = fmt::format("node {}", walk.back()),
-                 .where = options.walk});
-  }
-  PlanReport report{.world = world, .task = task, .policy = options.walk, .plan = plan_of_walk(task, walk)};
+  // Options first, then what the map says, then what the walk's file says.
+  if (given.budget) task.budget = *given.budget;
+  if (!options.budget.empty()) task.budget = Budget::parse(options.budget).cost_in(world);
+  if (given.end != kNoNode) task.end = given.end;
+  if (!options.end.empty()) task.end = parse_end(world, options.end).of(task.start);
+  check_walk(report, options.walk);
   report.plan.bound = max_prize(task);
   report.plan.optimal = report.plan.prize >= report.plan.bound * (1 - kSumRounding);
   if (report.plan.optimal) report.plan.bound = report.plan.prize;
@@ -97,15 +72,15 @@ void add_check_command(CLI::App& app) {
       ->required()
       ->type_name("WALK");
   command
-      ->add_option(
-          "--budget", options->budget,
-          "What it may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's, else what it "
-          "costs")
+      ->add_option("--budget", options->budget,
+                   "What it may cost, or a multiple of the valid nodes, as 1.1x. The default is the map's, else the "
+                   "plan's, else what it costs")
       ->check(not_empty())
       ->type_name("B");
   command
-      ->add_option("--end", options->end,
-                   "Where it must end: anywhere, start, or a node. The default is the map's, else anywhere")
+      ->add_option(
+          "--end", options->end,
+          "Where it must end: anywhere, start, or a node. The default is the map's, else the plan's, else anywhere")
       ->check(not_empty())
       ->type_name("E");
   command

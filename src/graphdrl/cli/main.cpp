@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   graphdrl::add_evaluate_command(app);
   graphdrl::add_plan_command(app);
   graphdrl::add_check_command(app);
+  graphdrl::add_report_command(app);
   graphdrl::add_inspect_command(app);
   graphdrl::add_maps_command(app);
   graphdrl::add_bench_command(app);

@@ -12,6 +12,7 @@
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/graphml.h"
 #include "graphdrl/report/picture.h"
+#include "graphdrl/report/report_page.h"
 
 namespace graphdrl {
 namespace {
@@ -27,18 +28,6 @@ bool has_coordinates(const World& world) {
 
 std::string label_of(const World& world, NodeId node) {
   return world.labels().empty() ? std::to_string(node) : world.labels()[node];
-}
-
-// What has been spent at every step.
-std::vector<double> costs_so_far(const PlanReport& report) {
-  const Graph& open = report.world.open();
-  std::vector<double> costs = {0};
-  const std::vector<NodeId>& walk = report.plan.walk;
-  for (std::size_t i = 1; i < walk.size(); ++i) {
-    const double step = walk[i] == walk[i - 1] ? 1 : open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
-    costs.push_back(costs.back() + step);
-  }
-  return costs;
 }
 
 // The step at which each node was first visited; empty where never.
@@ -163,9 +152,12 @@ std::string plan_ros_path(const PlanReport& report) {
   return text;
 }
 
+std::string title_of(const PlanReport& report) {
+  return fmt::format("{}, {}", report.world.name().substr(0, kLongestTitle), report.policy);
+}
+
 Picture picture_of(const PlanReport& report) {
-  const std::string title = report.world.name().substr(0, kLongestTitle) + ", " + report.policy;
-  return Picture(report.world, report.plan.walk, title, plan_summary(report));
+  return Picture(report.world, report.plan.walk, title_of(report), plan_summary(report));
 }
 
 std::string plan_svg(const PlanReport& report) {
@@ -178,6 +170,12 @@ std::string plan_moving_svg(const PlanReport& report) {
 
 std::string plan_png(const PlanReport& report) {
   return picture_of(report).png();
+}
+
+std::string plan_html(const PlanReport& report) {
+  ReportPage page(title_of(report));
+  page.add_plan(report);
+  return page.html();
 }
 
 std::string plan_json_text(const PlanReport& report) {
@@ -201,6 +199,7 @@ constexpr std::array kFormats = {
     PlanFormat{".anim.svg", plan_moving_svg},
     PlanFormat{".svg", plan_svg},
     PlanFormat{".png", plan_png},
+    PlanFormat{".html", plan_html},
 };
 
 const PlanFormat& format_for(const std::string& file) {
@@ -212,6 +211,17 @@ const PlanFormat& format_for(const std::string& file) {
 }
 
 }  // namespace
+
+std::vector<double> costs_so_far(const PlanReport& report) {
+  const Graph& open = report.world.open();
+  std::vector<double> costs = {0};
+  const std::vector<NodeId>& walk = report.plan.walk;
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    const double step = walk[i] == walk[i - 1] ? 1 : open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
+    costs.push_back(costs.back() + step);
+  }
+  return costs;
+}
 
 nlohmann::ordered_json plan_json(const PlanReport& report) {
   const World& world = report.world;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "graphdrl/planners/plan.h"
 
@@ -22,11 +23,15 @@ struct PlanReport {
 // The document that `graphdrl plan --json` prints.
 nlohmann::ordered_json plan_json(const PlanReport& report);
 
+// What has been spent at every node of the walk.
+std::vector<double> costs_so_far(const PlanReport& report);
+
 // Two or three lines: what it visits, what it costs, and the bound.
 std::vector<std::string> plan_summary(const PlanReport& report);
 
 // Throws Error where no plan is written in a file with this ending: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
-// nav_msgs/Path), .svg, .anim.svg or .png; and where the format needs coordinates that the world does not have.
+// nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h); and where the format needs coordinates that
+// the world does not have.
 void check_plan_file(const World& world, const std::string& file);
 
 // Writes a plan in the format of the file's ending. Throws Error.
@@ -35,9 +40,13 @@ void write_plan(const PlanReport& report, const std::string& file);
 // The endings, for help texts.
 std::string plan_file_endings();
 
-// The nodes of a walk in a file: the document above, an array of node ids, or lines with a node each, the first field
-// of CSV or, below a header, the column `node`, `id` or `label`. Nodes are named as for parse_node(). Throws Error,
-// naming the file and the line.
-std::vector<NodeId> read_walk(const World& world, const std::string& file);
+// A plan from a file: the document above, an array of node ids, or lines with a node each, the first field of CSV or,
+// below a header, the column `node`, `id` or `label`. Nodes are named as for parse_node(). Policy, budget, end and
+// bound are what the document says; without them the file's name, what the walk costs, anywhere, and none. Throws
+// Error, naming the file and the line, also where a step follows no edge.
+PlanReport read_plan(const World& world, const std::string& file);
+
+// Throws Error, naming `file`, where the plan's walk costs more than the task's budget or ends elsewhere.
+void check_walk(const PlanReport& report, const std::string& file);
 
 }  // namespace graphdrl

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/report/report_page.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr int kMostPort = 65535;
+
+struct ReportOptions {
+  std::vector<std::string> inputs;
+  std::string map;
+  MapOptions reading;
+  std::string scores;
+  std::string title = "GraphDRL report";
+  std::string out;
+  bool watch = false;
+  int port = 8000;
+};
+
+// What a page calls its runs and evaluations: the last part of the path, or all of it where that is taken.
+class Names {
+ public:
+  std::string name(const std::string& path) {
+    const std::filesystem::path given(path);
+    const std::filesystem::path last = given.has_filename() ? given.filename() : given.parent_path().filename();
+    const std::string shortest = last.stem().string();
+    return taken_.insert(shortest).second ? shortest : path;
+  }
+
+ private:
+  std::set<std::string> taken_;
+};
+
+// Evaluations are told from plans by what they hold.
+std::optional<nlohmann::json> read_evaluation(const std::string& file) {
+  const std::string text = read_file(file);
+  if (!text.starts_with('{')) return std::nullopt;
+  nlohmann::json document = parse_json(text, file);
+  if (!document.contains("rows")) return std::nullopt;
+  return document;
+}
+
+ReportPage make_page(const ReportOptions& options, const std::optional<World>& world) {
+  ReportPage page(options.title, options.watch);
+  Names names;
+  for (const std::string& input : options.inputs) {
+    if (std::filesystem::is_directory(input)) {
+      page.add_run(names.name(input), input);
+    } else if (const auto evaluation = read_evaluation(input)) {
+      page.add_evaluation(names.name(input), *evaluation);
+    } else if (world) {
+      const PlanReport plan = read_plan(*world, input);
+      check_walk(plan, input);
+      page.add_plan(plan, options.scores.empty() ? std::nullopt : std::optional(scores_along(plan, options.scores)));
+    } else {
+      throw Error({.what = "a plan needs its map", .expected = "--map MAP", .where = input});
+    }
+  }
+  return page;
+}
+
+// Serves the page to this machine alone, until a signal ends the program.
+void serve(const ReportOptions& options, const std::optional<World>& world) {
+  httplib::Server server;
+  // Its own options would let two programs share a port.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
+  // Bad input shall be found now, not by whoever opens the page.
+  make_page(options, world);
+  const auto answer = [&](auto content_of, const char* type) {
+    return [&options, &world, content_of, type](const httplib::Request& request, httplib::Response& response) {
+      // A page of another site, whose name leads here, must not read this one.
+      const std::string host = request.get_header_value("Host");
+      if (!host.starts_with("127.0.0.1:") && !host.starts_with("localhost:")) {
+        response.status = 403;
+        return;
+      }
+      response.set_header("Cache-Control", "no-store");
+      try {
+        response.set_content(content_of(make_page(options, world)), type);
+      } catch (const Error& error) {
+        response.status = 500;
+        response.set_content(error.what(), "text/plain");
+      }
+    };
+  };
+  server.Get("/", answer([](const ReportPage& page) { return page.html(); }, "text/html; charset=utf-8"));
+  server.Get("/data.json", answer([](const ReportPage& page) { return page.data(); }, "application/json"));
+  const int port = options.port == 0                                ? server.bind_to_any_port("127.0.0.1")
+                   : server.bind_to_port("127.0.0.1", options.port) ? options.port
+                                                                    : -1;
+  if (port < 0) {
+    throw Error({.what = "the port cannot be used", .got = std::to_string(options.port), .where = "--port"});
+  }
+  print_text(fmt::format("watching: http://127.0.0.1:{}/  (Ctrl-C ends it)\n", port));
+  server.listen_after_bind();
+}
+
+void report(const ReportOptions& options) {
+  if (options.watch != options.out.empty()) {
+    throw Error({.what = options.watch ? "--watch writes no file" : "nowhere to put the page",
+                 .expected = "either --out FILE or --watch"});
+  }
+  if (options.port < 0 || options.port > kMostPort) {
+    throw Error({.what = "bad port",
+                 .expected = fmt::format("0 to {}", kMostPort),
+                 .got = std::to_string(options.port),
+                 .where = "--port"});
+  }
+  if (!options.scores.empty() && options.map.empty()) {
+    throw Error({.what = "scores are of the moves of plans", .expected = "--map MAP", .where = "--scores"});
+  }
+  std::optional<World> world;
+  if (!options.map.empty()) world = load_one_world(options.map, options.reading);
+  if (options.watch) {
+    serve(options, world);
+  } else {
+    write_file(options.out, make_page(options, world).html());
+  }
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand(
+      "report", "Make a page of plans, trainings and evaluations: replays, curves, tables, in one HTML file");
+  const auto options = std::make_shared<ReportOptions>();
+  command
+      ->add_option(
+          "inputs", options->inputs,
+          "Plans that `plan --out` wrote (JSON or CSV), folders of `train`, and what `evaluate --json` printed")
+      ->required()
+      ->type_name("INPUTS");
+  command->add_option("-o,--out", options->out, "The page to write")->check(not_empty())->type_name("FILE");
+  command->add_option("--map", options->map, "The map of the plans: paper:a to paper:j, or a file")
+      ->check(not_empty())
+      ->type_name("MAP");
+  command
+      ->add_option("--scores", options->scores,
+                   "Show what this policy thinks of the possible moves at every step of the plans: explorer, or a "
+                   "policy file")
+      ->check(not_empty())
+      ->type_name("POLICY");
+  command->add_option("--title", options->title, "The title of the page")
+      ->check(not_empty())
+      ->type_name("TEXT")
+      ->capture_default_str();
+  command->add_flag("--watch", options->watch,
+                    "Instead of writing a file, serve the page on 127.0.0.1 and keep it up to date");
+  command->add_option("--port", options->port, "Where to serve it; 0 takes any free port")
+      ->type_name("N")
+      ->capture_default_str();
+  add_map_options(*command, options->reading);
+  add_threads_option(*command);
+  command->callback([options] { report(*options); });
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/env/budget.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/io/csv.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/io/text.h"
+#include "graphdrl/report/plan_files.h"
+
+namespace graphdrl {
+namespace {
+
+std::vector<NodeId> walk_of_json(const World& world, const nlohmann::json& document, const std::string& file) {
+  const nlohmann::json& walk = document.is_object() && document.contains("walk") ? document["walk"] : document;
+  if (!walk.is_array())
+    throw Error({.what = "no walk", .expected = "an array, or one under the key \"walk\"", .where = file});
+  std::vector<NodeId> nodes;
+  for (const nlohmann::json& item : walk) {
+    // A number is a node id, a text is what users call it.
+    const std::string name = item.is_number_integer() ? fmt::format("#{}", item.dump())
+                             : item.is_string()       ? item.get<std::string>()
+                                                      : "";
+    if (name.empty()) {
+      throw Error({.what = "not a node", .expected = "a node id or a label", .got = shortened(item), .where = file});
+    }
+    nodes.push_back(parse_node(world, name, fmt::format("{}: step {}", file, nodes.size())));
+  }
+  return nodes;
+}
+
+std::vector<NodeId> walk_of_lines(const World& world, const std::string& text, const std::string& file) {
+  std::vector<NodeId> nodes;
+  Lines lines(text);
+  int column = 0;
+  bool ids = false;  // the column has node ids
+  char separator = ' ';
+  bool first = true;
+  while (lines.next()) {
+    const std::string_view line = lines.line();
+    if (is_comment(line)) continue;
+    const std::string where = fmt::format("{}:{}", file, lines.number());
+    if (first) separator = separator_of(line);
+    const std::vector<std::string> fields = split_fields(line, separator);
+    if (std::exchange(first, false)) {
+      const std::array<std::string_view, 2> id_names = {"node", "id"};
+      const std::array<std::string_view, 1> names = {"label"};
+      const int id_column = column_of(fields, id_names);
+      const int label_column = column_of(fields, names);
+      ids = id_column != kNoColumn;
+      if (ids || label_column != kNoColumn) {
+        column = ids ? id_column : label_column;
+        continue;
+      }
+    }
+    if (std::ssize(fields) <= column) {
+      throw Error({.what = "no node", .expected = "a node a line", .got = in_quotes(line), .where = where});
+    }
+    const std::string& name = fields[column];
+    nodes.push_back(parse_node(world, ids && parse_number(name) ? fmt::format("#{}", name) : name, where + ": node"));
+  }
+  return nodes;
+}
+
+// Throws Error where a step of the walk follows no edge.
+void check_steps(const World& world, const std::vector<NodeId>& walk, const std::string& file) {
+  const auto name = [&](NodeId node) {
+    return world.labels().empty() ? fmt::format("node {}", node) : in_quotes(world.labels()[node]);
+  };
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    const bool stays = walk[i] == walk[i - 1] && world.is_grid();  // a blocked move
+    if (stays || world.open().index_of(walk[i - 1], walk[i]) >= 0) continue;
+    throw Error(
+        {.what = fmt::format("not a walk: no edge leads from {} to {}, step {}", name(walk[i - 1]), name(walk[i]), i),
+         .where = file});
+  }
+}
+
+std::optional<double> number_at(const nlohmann::json& document, const char* key) {
+  const auto item = document.find(key);
+  if (item == document.end() || !item->is_number()) return std::nullopt;
+  return item->get<double>();
+}
+
+// What a document says beside the walk.
+void read_claims(const World& world, const nlohmann::json& document, const std::string& file, PlanReport& report) {
+  if (const auto policy = document.find("policy"); policy != document.end() && policy->is_string()) {
+    report.policy = *policy;
+  }
+  if (const auto budget = number_at(document, "budget")) report.task.budget = checked_budget(world, *budget);
+  if (const auto end = document.find("end"); end != document.end() && end->is_number_integer()) {
+    report.task.end = parse_node(world, fmt::format("#{}", end->dump()), file + ": end");
+  }
+  Plan& plan = report.plan;
+  if (const auto bound = number_at(document, "upper_bound")) plan.bound = *bound / 100 * world.total_prize();
+  plan.optimal = document.value("optimal", nlohmann::json()) == true;
+  if (!world.has_prizes() && std::isfinite(plan.bound)) report.max_visited = static_cast<int>(std::lround(plan.bound));
+}
+
+}  // namespace
+
+PlanReport read_plan(const World& world, const std::string& file) {
+  const std::string text = read_file(file);
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
+  const nlohmann::json document = is_json ? parse_json(text, file) : nlohmann::json();
+  std::vector<NodeId> walk = is_json ? walk_of_json(world, document, file) : walk_of_lines(world, text, file);
+  if (walk.empty()) throw Error({.what = "the walk is empty", .expected = "at least a start", .where = file});
+  check_steps(world, walk, file);
+  Task task{.view = world, .start = walk.front(), .budget = 0, .end = kNoNode};
+  PlanReport report{.world = world, .task = task, .policy = file, .plan = plan_of_walk(task, std::move(walk))};
+  report.task.budget = report.plan.cost;
+  if (document.is_object()) read_claims(world, document, file, report);
+  return report;
+}
+
+void check_walk(const PlanReport& report, const std::string& file) {
+  if (report.plan.cost > report.task.limit()) {
+    throw Error({.what = "the walk costs more than the budget",
+                 .expected = fmt::format("at most {:g}", report.task.budget),
+                 .got = fmt::format("{:g}", report.plan.cost),
+                 .where = file});
+  }
+  if (!report.task.ends_anywhere() && report.plan.walk.back() != report.task.end) {
+    throw Error({.what = "the walk ends elsewhere",
+                 .expected = fmt::format("node {}", report.task.end),
+                 .got = fmt::format("node {}", report.plan.walk.back()),
+                 .where = file});
+  }
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,219 @@
+#include "graphdrl/report/report_page.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/io/text.h"
+#include "graphdrl/report/base64.h"
+#include "graphdrl/report/page_parts.h"
+
+namespace graphdrl {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kDataVersion = 1;                      // page.js reads no other
+constexpr std::int64_t kMostEdgesShown = 2'000'000;  // of a graph; more would hide the nodes
+constexpr int kNonceBytes = 18;
+
+// Node i is bit i % 8 of byte i / 8.
+std::string bitset(const std::vector<bool>& bits) {
+  std::string bytes((bits.size() + 7) / 8, '\0');
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if (bits[i]) bytes[i / 8] = static_cast<char>(bytes[i / 8] | 1 << (i % 8));
+  }
+  return base64(bytes);
+}
+
+Json edges_of(const Graph& graph) {
+  Json edges = Json::array();
+  if (graph.is_complete() || graph.edge_count() > kMostEdgesShown) return edges;
+  for (NodeId node = 0; node < graph.node_count(); ++node) {
+    for (const NodeId neighbour : graph.neighbours(node)) {
+      if (!graph.directed() && neighbour < node) continue;
+      edges.push_back(node);
+      edges.push_back(neighbour);
+    }
+  }
+  return edges;
+}
+
+Json world_json(const World& world) {
+  Json json = {{"name", world.name()},
+               {"nodes", world.node_count()},
+               {"valid", world.valid_count()},
+               {"kind", world.has_cells() ? "grid" : "graph"},
+               {"blocked", bitset(world.blocked())},
+               {"directed", world.open().directed()}};
+  if (world.has_cells()) {
+    json["rows"] = world.map()->rows;
+    json["cols"] = world.map()->cols;
+  } else {
+    json["edges"] = edges_of(world.graph());
+    if (world.has_places()) {
+      json["x"] = Json::array();
+      json["y"] = Json::array();
+      for (NodeId node = 0; node < world.node_count(); ++node) {
+        json["x"].push_back(world.place(node).x);
+        json["y"].push_back(world.place(node).y);
+      }
+    }
+  }
+  if (!world.labels().empty()) json["labels"] = world.labels();
+  if (world.has_prizes()) json["prizes"] = world.prizes();
+  return json;
+}
+
+Json plan_of(const PlanReport& report) {
+  Json json = {{"policy", report.policy},
+               {"walk", report.plan.walk},
+               {"visited", report.plan.visited},
+               {"budget", report.task.budget},
+               {"optimal", report.plan.optimal}};
+  if (report.world.open().weighted()) json["costs"] = costs_so_far(report);
+  if (std::isfinite(report.plan.bound)) json["upper_bound"] = report.world.percent_of_all(report.plan.bound);
+  return json;
+}
+
+// One line of metrics.jsonl a line of the array.
+Json metrics_of(const std::filesystem::path& file) {
+  const std::string text = read_file(file);
+  Json entries = Json::array();
+  Lines lines{std::string_view(text).substr(0, text.rfind('\n') + 1)};
+  while (lines.next()) {
+    if (trimmed(lines.line()).empty()) continue;
+    const nlohmann::json entry = parse_json_or_discard(lines.line());
+    if (!entry.is_object()) {
+      throw Error({.what = "bad line of metrics",
+                   .expected = "a JSON object",
+                   .got = in_quotes(lines.line()),
+                   .where = fmt::format("{}:{}", file.string(), lines.number())});
+    }
+    entries.push_back(Json(entry));
+  }
+  return entries;
+}
+
+std::string html_text(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+// A word that nobody can know before the page is made.
+std::string nonce() {
+  std::random_device device;
+  std::string bytes;
+  for (int i = 0; i < kNonceBytes; ++i) bytes += static_cast<char>(device());
+  return base64(bytes);
+}
+
+}  // namespace
+
+ReportPage::ReportPage(const std::string& title, bool watch)
+    : document_({{"version", kDataVersion},
+                 {"title", title},
+                 {"watch", watch},
+                 {"replays", Json::array()},
+                 {"runs", Json::array()},
+                 {"evaluations", Json::array()}}) {}
+
+void ReportPage::add_plan(const PlanReport& report, const std::optional<MoveScores>& scores) {
+  Json& replays = document_["replays"];
+  Json* replay = nullptr;
+  for (Json& one : replays) {
+    if (one["world"]["name"] == report.world.name()) replay = &one;
+  }
+  if (replay == nullptr) {
+    replays.push_back({{"title", report.world.name()}, {"world", world_json(report.world)}, {"plans", Json::array()}});
+    replay = &replays.back();
+  }
+  Json plan = plan_of(report);
+  if (scores) {
+    plan["scores_name"] = scores->name;
+    plan["lower_is_better"] = scores->lower_is_better;
+    plan["scores"] = Json::array();
+    for (const std::vector<MoveScore>& step : scores->steps) {
+      Json moves = Json::array();
+      for (const MoveScore& move : step) {
+        moves.push_back(move.node);
+        moves.push_back(move.score);
+      }
+      plan["scores"].push_back(std::move(moves));
+    }
+  }
+  (*replay)["plans"].push_back(std::move(plan));
+}
+
+void ReportPage::add_run(const std::string& name, const std::filesystem::path& folder) {
+  document_["runs"].push_back({{"name", name}, {"lines", metrics_of(folder / "metrics.jsonl")}});
+}
+
+void ReportPage::add_evaluation(const std::string& name, const nlohmann::json& evaluation) {
+  document_["evaluations"].push_back({{"name", name},
+                                      {"rows", Json(evaluation.value("rows", nlohmann::json::array()))},
+                                      {"overall", Json(evaluation.value("overall", nlohmann::json::array()))}});
+}
+
+std::string ReportPage::data() const {
+  return document_.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string ReportPage::html() const {
+  std::string data_element;  // no text in it ends the element
+  for (const char c : data()) {
+    if (c == '<') {
+      data_element += "\\u003c";
+    } else {
+      data_element += c;
+    }
+  }
+  const std::string title = html_text(document_["title"].get<std::string>());
+  const std::string secret = nonce();
+  const std::string_view connect = document_["watch"] ? "'self'" : "'none'";
+  const auto value_of = [&](std::string_view token) -> std::string_view {
+    if (token == "title") return title;
+    if (token == "css") return page_style();
+    if (token == "chart_library") return chart_library();
+    if (token == "script") return page_script();
+    if (token == "data") return data_element;
+    if (token == "nonce") return secret;
+    if (token == "connect") return connect;
+    throw std::logic_error(fmt::format("page.html has a token {}", token));
+  };
+  // In one pass: what stands in for a token is no template itself.
+  std::string page;
+  std::string_view rest = page_template();
+  for (std::size_t begin = rest.find("{{"); begin != std::string_view::npos; begin = rest.find("{{")) {
+    const std::size_t end = rest.find("}}", begin);
+    page += rest.substr(0, begin);
+    page += value_of(rest.substr(begin + 2, end - begin - 2));
+    rest.remove_prefix(end + 2);
+  }
+  page += rest;
+  return page;
+}
+
+}  // namespace graphdrl
