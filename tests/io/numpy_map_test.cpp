@@ -53,6 +53,8 @@ TEST(NumpyMap, RefusesOtherArrays) {
   EXPECT_THAT(complaint(npy("<f8", "(10000000, 10000000)", {})), HasSubstr("an array of another shape"));
   EXPECT_THAT(complaint(npy("<f8", "(3, 4, 4)", kSquare)), HasSubstr("an array of another shape"));
   EXPECT_THAT(complaint(npy("<f8", "(4,", kSquare)), HasSubstr("shape"));
+  EXPECT_THAT(complaint(npy("<f8", "4", kSquare)), HasSubstr("bad shape"));
+  EXPECT_THAT(complaint(npy("<f8", "", kSquare)), HasSubstr("bad shape"));
   EXPECT_THAT(complaint(npy("<c16", "(2, 4, 4)", kSquare)), HasSubstr("an array of another type"));
   EXPECT_THAT(complaint(npy("<f8", "(2, 2)", {0, -1, 0, 0})), HasSubstr("bad value at [0, 1]"));
   EXPECT_THAT(complaint(npy("<f8", "(2, 1, 1)", {0, 1})), HasSubstr("no free node"));

@@ -94,6 +94,7 @@ class NumpyArray {
 
   void read_shape(std::string_view header) {
     const std::string_view text = value_of(header, "shape");
+    if (!text.starts_with('(')) fail("bad shape", "a tuple", text);
     std::size_t count = 1;
     for (std::string_view rest = text.substr(1); !rest.empty() && rest.front() != ')';) {
       const std::size_t end = rest.find_first_of(",)");
