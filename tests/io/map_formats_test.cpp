@@ -40,6 +40,7 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"ascii", "a\x01 b\n"},
       {"edge-list", "\"a b\";c;1\n"},
       {"edge-list", "P5 10 3\n"},
+      {"netpbm", "P5 10 3 255\n"},
       {"edge-list", "graph 1\n"},
       {"gml", "# by hand\nCreator \"a\"\ngraph\n[\n]\n"},
       {"dot", "/* x */ strict  digraph \"a\" {"},
@@ -335,6 +336,14 @@ TEST(MapFormats, TakeCostsByAnyName) {
   EXPECT_EQ(cost("from,to,time,cost\na,b,7,4\n", "time"), 7);
   EXPECT_EQ(cost("a b {'time': 7, 'weight': 4}\n", "time"), 7);
   EXPECT_THAT(error_of([&] { cost("a b 7\n", "time"); }), HasSubstr("no edge has this attribute"));
+}
+
+TEST(MapFormats, SayWhenSomeNodesLieNowhere) {
+  const std::string text = "graph [ node [ id 0 x 1 y 2 ] node [ id 1 ] edge [ source 0 target 1 ] ]";
+  std::string note;
+  const AnyMap map = format_of(text).read(text, "file", {.note = [&](const std::string& line) { note = line; }});
+  EXPECT_TRUE(std::get<GraphMap>(map).places.points.empty());
+  EXPECT_THAT(note, HasSubstr("only 1 of 2 nodes have coordinates"));
 }
 
 TEST(NodeLink, TakesAttributesByTheirUsualNames) {

@@ -21,6 +21,7 @@ TEST(Picture, ReadsEveryKindOfNetpbm) {
       "P3\n2 2\n# x\n9\n9 9 9  0 0 0  0 0 0  9 9 9\n",
       std::string("P4\n2 2\n") + '\x40' + '\x80',
       std::string("P5\n2 2\n255\n") + '\xff' + '\0' + '\0' + '\xff',
+      std::string("P5 2 2 255\n") + '\xff' + '\0' + '\0' + '\xff',
       std::string("P5\n2 2\n65535\n") + "\xff\xff" + std::string(4, '\0') + "\xff\xff",
       std::string("P6\n2 2\n255\n") + std::string(3, '\xff') + std::string(6, '\0') + std::string(3, '\xff'),
   };

@@ -174,7 +174,13 @@ std::vector<std::string> GraphBuilder::take_labels() {
 
 void GraphBuilder::take_places(GraphMap& map) const {
   const auto has_place = [](const Attributes& node) { return node.x && node.y; };
-  if (!std::all_of(nodes_.begin(), nodes_.end(), has_place)) return;
+  const auto placed = std::count_if(nodes_.begin(), nodes_.end(), has_place);
+  if (placed < std::ssize(nodes_)) {
+    if (placed > 0 && note_) {
+      note_(fmt::format("{}: only {} of {} nodes have coordinates, so none are used", place_(), placed, nodes_.size()));
+    }
+    return;
+  }
   for (const Attributes& node : nodes_) map.places.points.push_back({*node.x, *node.y});
   if (!nodes_.empty() && nodes_.front().degrees) map.places.unit = "degrees";
 }

@@ -37,7 +37,7 @@ class GraphBuilder {
  public:
   // place: where in the file the reader is, for errors.
   GraphBuilder(const MapOptions& options, std::function<std::string()> place)
-      : cost_attribute_(options.cost_attribute), place_(std::move(place)) {}
+      : cost_attribute_(options.cost_attribute), note_(options.note), place_(std::move(place)) {}
 
   // Throws Error where a node has this id already.
   NodeId add_node(std::string_view id);
@@ -84,6 +84,7 @@ class GraphBuilder {
   bool cost_attribute_met_ = false;
   std::vector<std::string> edge_attributes_;  // some that were met, for an error's message
   bool directed_ = false;
+  std::function<void(const std::string&)> note_;
   std::function<std::string()> place_;
   NodeIds ids_;
   std::vector<Attributes> nodes_;  // as many as the last one that has an attribute

@@ -149,9 +149,20 @@ bool is_png(std::string_view bytes) {
   return bytes.starts_with(kPngMagic);
 }
 
+// An edge list may begin with a node P5; a picture has its sizes below, or all three numbers beside.
 bool is_netpbm(std::string_view bytes) {
-  return bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6' &&
-         (bytes[2] == '\n' || bytes[2] == '\r' || bytes.substr(2).starts_with(" #"));
+  if (bytes.size() < 3 || bytes[0] != 'P' || bytes[1] < '1' || bytes[1] > '6') return false;
+  if (bytes[2] == '\n' || bytes[2] == '\r' || bytes.substr(2).starts_with(" #")) return true;
+  constexpr std::size_t kLongestHeader = 60;
+  int numbers = 0;
+  for (std::string_view rest = bytes.substr(2, kLongestHeader); rest.starts_with(' ') || rest.starts_with('\t');) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+    const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
+    if (digits == 0) break;
+    rest.remove_prefix(digits);
+    ++numbers;
+  }
+  return numbers >= 3;
 }
 
 GreyPicture read_png(std::string_view bytes, const std::string& source) {
