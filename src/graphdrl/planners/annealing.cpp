@@ -22,7 +22,8 @@ constexpr int kMostFailures = 5;  // to put a target into a region, and it grows
 constexpr int kSeedTries = 20;
 constexpr double kLeastRegion = 0.1;  // of all targets, taken from another route
 constexpr double kMostRegion = 0.5;
-constexpr double kLargestRegion = 1000;  // targets: more would take longer than a look at the clock may wait
+constexpr std::size_t kLongestMoved = 2000;  // targets, likewise: half of a route in worlds of up to 60x60
+constexpr double kLargestRegion = 1000;      // targets: more would take longer than a look at the clock may wait
 constexpr double kRounding = 1e-9;
 constexpr double kTiny = 1e-300;
 
@@ -192,7 +193,7 @@ void Annealing::move_region(int seed) {
   for (int i = 0; i < kSeedTries && (first == 0 || !route_.contains(first)); ++i) {
     first = static_cast<int>(rng_.below(targets));
   }
-  const auto half = static_cast<std::uint32_t>(best_.size() / 2 + 1);
+  const auto half = static_cast<std::uint32_t>(std::min(best_.size() / 2 + 1, kLongestMoved));
   if (first != 0 && route_.contains(first)) take_string(first, static_cast<int>(1 + rng_.below(half)));
 
   grown_.assign(1, seed);

@@ -129,8 +129,9 @@ Targets Targets::after(int first) const {
 double Targets::searched_cost(int from, int to, double most, NearestFirst& search) const {
   if (to == end()) return to_end_[from];
   double found = kNoLimit;
+  int searched = 0;
   search.run(view_.open(), nodes_[from], most, [&](NodeId node, double cost) {
-    if (node != nodes_[to]) return Next::kThrough;
+    if (node != nodes_[to]) return ++searched < kMostSearched ? Next::kThrough : Next::kEnd;
     found = cost;
     return Next::kEnd;
   });

@@ -45,7 +45,9 @@ class Targets {
     if (!table_.empty()) return row(from)[to];
     return to == end() ? to_end_[from] : near_cost(from, to);
   }
-  // The same, searched for in the graph: for at most so much, else kNoLimit. Cost: what is nearer.
+  // The same, searched for in the graph: for at most so much and among the nearest nodes, else kNoLimit. Cost: what is
+  // nearer, at most kMostSearched nodes.
+  static constexpr int kMostSearched = 4096;  // more than worlds of 60x60 have: farther ways stay as dear as they seem
   double searched_cost(int from, int to, double most, NearestFirst& search) const;
 
   // From a target other than the end to each, [T + 1]. REQUIRES: there is a table.
