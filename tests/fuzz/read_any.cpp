@@ -1,25 +1,27 @@
 // A target of libFuzzer for every reader of files: read_any --reader=NAME CORPUS. --reader=list prints the names.
-// A reader may throw Error, and nothing else. What it takes becomes a world, and is the same after a round trip.
+// A reader may throw Error, and nothing else. A map that it takes becomes a world, and is the same after a round trip.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/map_formats.h"
 #include "graphdrl/io/safetensors.h"
+#include "graphdrl/report/plan_files.h"
 
 namespace {
 
 using namespace graphdrl;
 
 constexpr std::string_view kOption = "--reader=";
-constexpr std::string_view kTensors = "safetensors";
 constexpr NodeId kMostNodesWritten = 2000;  // larger maps take long to write
-
-const MapFormat* chosen_format = nullptr;  // null: safetensors
 
 [[noreturn]] void fail(const char* what) {
   std::fprintf(stderr, "read_any: %s\n", what);
@@ -42,7 +44,7 @@ void write_and_read(const MapFormat& format, const AnyMap& map, const std::strin
   if (before.blocked != after.blocked) fail("obstacles lost on a round trip");
 }
 
-void read_map(const MapFormat& format, std::string_view text) {
+void read_map(const MapFormat& format, const std::string& text) {
   const AnyMap map = format.read(text, "input", {});
   if (as_graph(map).graph.node_count() > kMostNodesWritten) return;
   try {
@@ -57,16 +59,38 @@ void read_map(const MapFormat& format, std::string_view text) {
   }
 }
 
+// A plan for a small world whose nodes have labels, one of them a number.
+void read_plan_text(const std::string& text) {
+  static const World world("house", Graph::from_edges(4, std::vector<Edge>{{0, 1}, {1, 2}, {2, 3}}),
+                           std::vector<bool>(4), {"hall", "kitchen", "3", "attic"});
+  const PlanReport report = parse_plan(world, text, "input");
+  if (report.plan.walk.empty()) fail("an empty walk was taken");
+  plan_json(report);
+}
+
+using Reader = std::function<void(const std::string&)>;
+
+std::map<std::string, Reader, std::less<>> all_readers() {
+  std::map<std::string, Reader, std::less<>> readers;
+  for (const MapFormat& format : map_formats()) {
+    readers.emplace(format.name, [&format](const std::string& text) { read_map(format, text); });
+  }
+  readers.emplace("safetensors", [](const std::string& text) { Safetensors::parse(text, "input"); });
+  readers.emplace("plan", read_plan_text);
+  return readers;
+}
+
+Reader chosen;
+
 void choose(std::string_view name) {
+  const auto readers = all_readers();
   if (name == "list") {
-    for (const MapFormat& format : map_formats()) std::printf("%s\n", std::string(format.name).c_str());
-    std::printf("%s\n", std::string(kTensors).c_str());
+    for (const auto& [reader, read] : readers) std::printf("%s\n", reader.c_str());
     std::exit(0);
   }
-  for (const MapFormat& format : map_formats()) {
-    if (format.name == name) chosen_format = &format;
-  }
-  if (chosen_format == nullptr && name != kTensors) fail("no such reader; --reader=list names them");
+  const auto found = readers.find(name);
+  if (found == readers.end()) fail("no such reader; --reader=list names them");
+  chosen = found->second;
 }
 
 }  // namespace
@@ -84,11 +108,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(data, data + size);  // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
   try {
-    if (chosen_format != nullptr) {
-      read_map(*chosen_format, text);
-    } else {
-      Safetensors::parse(text, "input");
-    }
+    chosen(text);
   } catch (const Error&) {
     return 0;
   }

@@ -46,6 +46,9 @@ std::string plan_file_endings();
 // Error, naming the file and the line, also where a step follows no edge.
 PlanReport read_plan(const World& world, const std::string& file);
 
+// The same for a text; `file` is for error messages.
+PlanReport parse_plan(const World& world, const std::string& text, const std::string& file);
+
 // Throws Error, naming `file`, where the plan's walk costs more than the task's budget or ends elsewhere.
 void check_walk(const PlanReport& report, const std::string& file);
 

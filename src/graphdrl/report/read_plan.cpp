@@ -106,7 +106,10 @@ void read_claims(const World& world, const nlohmann::json& document, const std::
 }  // namespace
 
 PlanReport read_plan(const World& world, const std::string& file) {
-  const std::string text = read_file(file);
+  return parse_plan(world, read_file(file), file);
+}
+
+PlanReport parse_plan(const World& world, const std::string& text, const std::string& file) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
   const nlohmann::json document = is_json ? parse_json(text, file) : nlohmann::json();
