@@ -25,8 +25,8 @@ constexpr double kRootWork = 1e7;           // without a deadline, of the linear
 constexpr double kBranchWork = 2e6;         // likewise, of branching once the search is over
 constexpr double kStepS = 5e-6;             // a step takes about as long
 constexpr double kLongTime = 4;             // in searches of so many steps: then branching has as much
-// Caves of 512x512 cells at 0.5x: a step takes a millisecond there, and ten minutes of steps visit no more than none. So
-// steps become fewer from 10,000 targets on.
+// Caves of 512x512 cells at 0.5x: a step takes a millisecond there, and ten minutes of steps visit no more than none.
+// So steps become fewer from 10,000 targets on.
 constexpr double kMostStepsTargets = 1e10;  // steps times targets, at most
 // Where the choice matters:
 constexpr int kPopulation = 8;
