@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "../support.h"
 #include "graphdrl/base/parallel.h"
@@ -183,6 +184,27 @@ TEST(Route, IsAListWhoseChangesCanBeUndone) {
       expect_equal(list);
     }
   }
+}
+
+// Labels run out where all targets come after one of them; those around make room.
+TEST(Route, HasRoomForManyTargetsInOnePlace) {
+  const World world = family_world("obstacles", 61);
+  const Targets targets(task_of(world), {});
+  const int end = targets.end();
+  const int half = end / 2;
+  Route route(targets);
+  std::vector<int> list(half - 1);
+  std::iota(list.begin(), list.end(), 1);
+  route.assign(list, std::vector<double>(list.size() + 1, 1));
+  const int after = half / 2;
+  for (int target = half; target < end; ++target) route.insert(target, after, 1, 1);
+  int last = 0;
+  for (const int target : route.order()) {
+    ASSERT_TRUE(route.before(last, target)) << last << " and " << target;
+    last = target;
+  }
+  EXPECT_TRUE(route.before(last, end));
+  EXPECT_EQ(route.next(after), end - 1);
 }
 
 TEST(Annealing, RecombinesRoutes) {

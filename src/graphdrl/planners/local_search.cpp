@@ -25,9 +25,10 @@ constexpr double kRootWork = 1e7;           // without a deadline, of the linear
 constexpr double kBranchWork = 2e6;         // likewise, of branching once the search is over
 constexpr double kStepS = 5e-6;             // a step takes about as long
 constexpr double kLongTime = 4;             // in searches of so many steps: then branching has as much
-// Caves of 512x512 cells at 0.5x: a step takes a millisecond there, and ten minutes of steps visit no more than none.
-// So steps become fewer from 10,000 targets on.
-constexpr double kMostStepsTargets = 1e10;  // steps times targets, at most
+// So many steps at most with 10,000 targets, and fewer by the square of their number beyond. In caves of 512x512 cells
+// at 0.5x a step takes several milliseconds, and ten minutes of steps visit no more than none.
+constexpr double kDearSteps = 1e6;
+constexpr double kDearTargets = 1e4;
 // Where the choice matters:
 constexpr int kPopulation = 8;
 constexpr double kFirstShare = 0.4;  // of the schedule, for the first population
@@ -194,7 +195,8 @@ struct Anneal {
 
 std::int64_t default_iterations(int targets) {
   const auto count = static_cast<std::int64_t>(targets);
-  const auto dear = static_cast<std::int64_t>(kMostStepsTargets / std::max(targets, 1));
+  const double dearness = std::max(1.0, static_cast<double>(targets) / kDearTargets);
+  const auto dear = static_cast<std::int64_t>(kDearSteps / (dearness * dearness));
   const std::int64_t most = std::min(std::max<std::int64_t>(550'000, 100 * count), dear);
   return std::max<std::int64_t>(std::min(3 * count * count, most), 10'000);
 }

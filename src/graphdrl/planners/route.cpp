@@ -92,7 +92,7 @@ void Route::put(int target, int after, double in, double out) {
   stop = {
       .next = next, .previous = after, .link = out, .label = before.label + (stops_[next].label - before.label) / 2};
   stops_[next].previous = target;
-  if (stop.label == before.label) renumber();
+  if (stop.label == before.label) make_room(target);
 }
 
 void Route::take(int target, double link) {
@@ -132,6 +132,24 @@ void Route::turn(int first, int last, double in, double out) {
   stops_[previous].next = after;
   stops_[previous].link = link;
   stops_[after].previous = previous;
+}
+
+// Spreads the labels around a target, over as many neighbours as it takes [Dietz and Sleator 1987].
+void Route::make_room(int target) {
+  const int end = targets_->end();
+  int first = target;
+  int last = target;
+  std::int64_t count = 0;
+  for (int reach = kFirstReach; first != 0 || last != end; reach *= 2) {
+    for (int i = 0; i < reach && first != 0; ++i, ++count) first = stops_[first].previous;
+    for (int i = 0; i < reach && last != end; ++i, ++count) last = stops_[last].next;
+    const std::int64_t gap = (stops_[last].label - stops_[first].label) / count;
+    if (gap < kLeastGap) continue;
+    std::int64_t label = stops_[first].label;
+    for (int i = first; i != last; i = stops_[i].next, label += gap) stops_[i].label = label;
+    return;
+  }
+  renumber();
 }
 
 void Route::renumber() {

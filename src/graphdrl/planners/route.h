@@ -55,7 +55,9 @@ class Route {
   std::vector<int> order() const;  // without target 0 and the end
 
  private:
-  static constexpr std::int64_t kGap = std::int64_t{1} << 32;
+  static constexpr std::int64_t kGap = std::int64_t{1} << 32;       // between labels
+  static constexpr std::int64_t kLeastGap = std::int64_t{1} << 16;  // where room was made
+  static constexpr int kFirstReach = 16;                            // targets each way
   struct Stop {
     int next = kNone;
     int previous = kNone;
@@ -75,6 +77,7 @@ class Route {
   void put(int target, int after, double in, double out);
   void take(int target, double link);
   void turn(int first, int last, double in, double out);
+  void make_room(int target);
   void renumber();
 
   const Targets* targets_;
