@@ -23,14 +23,9 @@
 namespace graphdrl {
 namespace {
 
-// Of a time limit: the bound may take a share of it before planning, and what comes after planning has the rest.
-constexpr double kBoundShare = 0.3;
-constexpr double kPlanShare = 0.97;
 constexpr double kProgressAfterS = 1;
-constexpr double kMostSeconds = 1e6;
 constexpr std::size_t kLongestWalkPrinted = 2000;  // nodes
 constexpr std::size_t kWidestDrawing = 240;        // characters
-constexpr double kRounding = 1e-9;                 // of sums of prizes
 
 struct PlanOptions {
   std::string map;
@@ -38,10 +33,8 @@ struct PlanOptions {
   std::string budget;
   std::string start;
   std::string end;
-  std::string policy = "search";
+  PlanRequest request;
   std::optional<std::int64_t> iterations;
-  std::optional<double> time_limit_s;
-  std::uint64_t seed = 1;
   std::vector<std::string> out;
   bool json = false;
 };
@@ -70,53 +63,6 @@ class PlanDisplay {
   ProgressDisplay display_;
 };
 
-int count_unreachable(const World& world, NodeId start) {
-  int reached = 1;
-  NearestFirst().run(world.open(), start, kNoLimit, [&](NodeId, double) {
-    ++reached;
-    return NearestFirst::Next::kThrough;
-  });
-  return world.valid_count() - reached;
-}
-
-// Nothing is believed that cannot be walked.
-void check_plan(const World& world, const Task& task, const Plan& plan) {
-  const End end = task.ends_anywhere() ? End::anywhere() : End::at(task.end);
-  Episode episode(world, {.budget = task.budget, .end = end, .action_space = action_space_of(world)});
-  follow_walk(episode, plan.walk);
-  const bool ends_well = task.ends_anywhere() || episode.position() == task.end;
-  if (!ends_well || episode.visited_count() != plan.visited) throw std::logic_error("the plan is not what it says");
-}
-
-PlanReport make_plan(const World& world, const Task& task, const PlanOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto deadline = [&](double share) -> Deadline {
-    if (!options.time_limit_s) return std::nullopt;
-    return begin + std::chrono::duration_cast<std::chrono::nanoseconds>(
-                       std::chrono::duration<double>(share * *options.time_limit_s));
-  };
-  PlanDisplay display(world);
-  const Report report = [&](const PlanProgress& progress) { display.show(progress); };
-  PlanReport answer{.world = world, .task = task, .policy = policy_label(options.policy), .plan = {}};
-  const auto planner = make_planner(options.policy, options.seed);
-  const bool bounds = planner != nullptr && planner->bounds();
-  const double bound = bounds ? kNoLimit : max_prize(task, deadline(kBoundShare));
-  if (planner != nullptr) {
-    answer.plan = planner->plan(task, deadline(kPlanShare), report);
-  } else {
-    answer.plan = plan_by_steps(world, task, *make_policy(options.policy, options.seed), deadline(kPlanShare), report);
-  }
-  Plan& plan = answer.plan;
-  check_plan(world, task, plan);
-  plan.bound = std::min(plan.bound, bound);
-  plan.optimal = plan.optimal || plan.prize >= plan.bound * (1 - kRounding);
-  if (plan.optimal) plan.bound = plan.prize;
-  if (!world.has_prizes()) answer.max_visited = static_cast<int>(plan.bound);
-  answer.unreachable = count_unreachable(world, task.start);
-  answer.elapsed_s = seconds_since(begin);
-  return answer;
-}
-
 std::string name_of(const World& world, NodeId node) {
   if (!world.labels().empty()) return fmt::format("{} (node {})", escaped(world.labels()[node]), node);
   if (!world.has_cells()) return fmt::format("node {}", node);
@@ -136,8 +82,8 @@ std::string format_bound(const World& world, const PlanReport& answer) {
 
 std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const PlanReport& answer) {
   const Plan& plan = answer.plan;
-  std::string text =
-      fmt::format("{}, {} from {}", world.name(), policy_label(options.policy), name_of(world, plan.walk.front()));
+  std::string text = fmt::format("{}, {} from {}", world.name(), policy_label(options.request.policy),
+                                 name_of(world, plan.walk.front()));
   if (!task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, task.end));
   text += fmt::format(", budget {:g}\n", task.budget);
   text += fmt::format("visited  {} of {} nodes, {:.1f} %, for {:g}\n", plan.visited, world.valid_count(),
@@ -183,9 +129,9 @@ void stop_planning_on_signals() {
 
 // The policy's name, with the iterations asked for.
 std::string policy_of(const PlanOptions& options) {
-  if (!options.iterations) return options.policy;
-  if (options.policy == "search") return fmt::format("search:{}", *options.iterations);
-  throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(options.policy, 200)});
+  if (!options.iterations) return options.request.policy;
+  if (options.request.policy == "search") return fmt::format("search:{}", *options.iterations);
+  throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(options.request.policy, 200)});
 }
 
 // What the options say; the file, where they do not.
@@ -204,18 +150,14 @@ Task task_of(const World& world, const PlanOptions& options) {
 }
 
 void plan(PlanOptions options) {
-  options.policy = policy_of(options);
-  if (options.time_limit_s && !(*options.time_limit_s >= 0 && *options.time_limit_s <= kMostSeconds)) {
-    throw Error({.what = "bad time limit",
-                 .expected = fmt::format("0 to {:.0f} seconds", kMostSeconds),
-                 .got = fmt::format("{}", *options.time_limit_s),
-                 .where = "--time-limit"});
-  }
+  options.request.policy = policy_of(options);
   const World world = load_one_world(options.map, options.reading);
   const Task task = task_of(world, options);
   for (const std::string& file : options.out) check_plan_file(world, file);
   stop_planning_on_signals();
-  const PlanReport answer = make_plan(world, task, options);
+  PlanDisplay display(world);
+  const Report report = [&](const PlanProgress& progress) { display.show(progress); };
+  const PlanReport answer = make_plan(world, task, options.request, report);
   for (const std::string& file : options.out) write_plan(answer, file);
   if (options.json) {
     print_json(plan_json(answer));
@@ -253,13 +195,13 @@ void add_plan_command(CLI::App& app) {
                    "else anywhere")
       ->check(not_empty())
       ->type_name("E");
-  command->add_option("--policy", options->policy, policy_names())->type_name("P")->capture_default_str();
+  command->add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
   command
       ->add_option("--iterations", options->iterations,
                    "Of search: how many steps to take in all; the default depends on the size of the world")
       ->type_name("N");
   command
-      ->add_option("--time-limit", options->time_limit_s,
+      ->add_option("--time-limit", options->request.time_limit_s,
                    "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, "
                    "others stop "
                    "with what they have")
@@ -270,7 +212,7 @@ void add_plan_command(CLI::App& app) {
                        "; may be given again")
       ->check(not_empty())
       ->type_name("FILE");
-  add_seed_option(*command, options->seed, "For search and for random policies");
+  add_seed_option(*command, options->request.seed, "For search and for random policies");
   command->add_flag("--json", options->json, "Print one JSON document");
   add_map_options(*command, options->reading);
   add_threads_option(*command);

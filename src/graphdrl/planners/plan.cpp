@@ -10,8 +10,8 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes i
 
 }  // namespace
 
-void stop_planning() {
-  stopped = true;
+void stop_planning(bool stop) {
+  stopped = stop;
 }
 
 bool planning_stopped() {

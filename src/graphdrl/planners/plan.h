@@ -19,8 +19,9 @@ using TimeLimit = std::optional<std::chrono::duration<double>>;
 
 Deadline deadline_after(TimeLimit limit);
 
-// Asks every planner to end now, as if its deadline had passed; a signal handler may. For good.
-void stop_planning();
+// Asks every planner to end now, as if its deadline had passed, and those that begin later, until it is taken back. A
+// signal handler may.
+void stop_planning(bool stop = true);
 bool planning_stopped();
 
 inline bool passed(Deadline deadline) {

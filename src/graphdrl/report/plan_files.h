@@ -5,20 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "graphdrl/planners/plan.h"
+#include "graphdrl/report/plan_report.h"
 
 namespace graphdrl {
-
-// A plan, and what is said beside it.
-struct PlanReport {
-  World world;
-  Task task;
-  std::string policy;  // as users name it
-  Plan plan;
-  int max_visited = 0;  // by any walk, at most; where there are no prizes
-  int unreachable = 0;  // valid nodes that no walk can reach, whatever it spends
-  double elapsed_s = 0;
-};
 
 // The document that `graphdrl plan --json` prints.
 nlohmann::ordered_json plan_json(const PlanReport& report);
