@@ -1,30 +1,44 @@
 # Everything GraphDRL stands on, from Debian 12's packages. What each is for: README.md.
-find_package(TBB REQUIRED)
-find_package(fmt REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(CLI11 REQUIRED)
-find_package(PNG REQUIRED)
-find_package(pugixml REQUIRED)
-find_package(yaml-cpp REQUIRED)
-find_package(Protobuf REQUIRED)
-find_package(Boost 1.74 REQUIRED)
+function(require found what debian)
+  if(NOT found) # empty, FALSE or NOTFOUND
+    message(FATAL_ERROR "${what} not found: install Debian's ${debian}; scripts/setup installs all that is needed")
+  endif()
+endfunction()
+
+macro(require_package name debian)
+  find_package(${name} ${ARGN} QUIET)
+  require("${${name}_FOUND}" ${name} ${debian})
+endmacro()
+
+require_package(TBB libtbb-dev)
+require_package(fmt libfmt-dev)
+require_package(nlohmann_json nlohmann-json3-dev)
+require_package(CLI11 libcli11-dev)
+require_package(PNG libpng-dev)
+require_package(pugixml libpugixml-dev)
+require_package(yaml-cpp libyaml-cpp-dev)
+require_package(Protobuf "libprotobuf-dev and protobuf-compiler")
+require_package(Boost libboost-dev 1.74)
 
 # Cairo brings no CMake package.
-find_path(CAIRO_INCLUDE_DIR cairo.h PATH_SUFFIXES cairo REQUIRED)
-find_library(CAIRO_LIBRARY cairo REQUIRED)
+find_path(CAIRO_INCLUDE_DIR cairo.h PATH_SUFFIXES cairo)
+find_library(CAIRO_LIBRARY cairo)
+require("${CAIRO_INCLUDE_DIR}" Cairo libcairo2-dev)
 add_library(graphdrl_cairo INTERFACE)
 target_include_directories(graphdrl_cairo SYSTEM INTERFACE ${CAIRO_INCLUDE_DIR})
 target_link_libraries(graphdrl_cairo INTERFACE ${CAIRO_LIBRARY})
 
 # Neither does cpp-httplib.
-find_path(HTTPLIB_INCLUDE_DIR httplib.h REQUIRED)
-find_library(HTTPLIB_LIBRARY cpp-httplib REQUIRED)
+find_path(HTTPLIB_INCLUDE_DIR httplib.h)
+find_library(HTTPLIB_LIBRARY cpp-httplib)
+require("${HTTPLIB_INCLUDE_DIR}" cpp-httplib libcpp-httplib-dev)
 add_library(graphdrl_httplib INTERFACE)
 target_include_directories(graphdrl_httplib SYSTEM INTERFACE ${HTTPLIB_INCLUDE_DIR})
 target_link_libraries(graphdrl_httplib INTERFACE ${HTTPLIB_LIBRARY})
 
 # Chart.js, for the report page.
-find_file(CHART_LIBRARY chart.min.js PATHS /usr/share/javascript/chart.js REQUIRED)
+find_file(CHART_LIBRARY chart.min.js PATHS /usr/share/javascript/chart.js)
+require("${CHART_LIBRARY}" Chart.js libjs-chart.js)
 
 # CLP (EPL-2.0) is optional: without it bounds are those of planners/bound.h. Not by pkg-config's flags, which would link
 # the programs with a LAPACK of the linker's choice.

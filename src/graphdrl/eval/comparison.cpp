@@ -101,11 +101,21 @@ struct Block {
   std::vector<int> episodes;
 };
 
+bool is_planner(const std::string& name, const ComparisonOptions& options) {
+  return !options.own_policies.contains(name) && make_planner(name) != nullptr;
+}
+
+std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, const ComparisonOptions& options) {
+  const auto own = options.own_policies.find(name);
+  return own == options.own_policies.end() ? graphdrl::make_policy(name, seed) : own->second();
+}
+
 // Planners get their starts one by one, others as many together as pays.
-std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const std::vector<std::string>& policies) {
+std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const ComparisonOptions& options) {
+  const std::vector<std::string>& policies = options.policies;
   std::vector<Block> blocks;
   for (int policy = 0; policy < std::ssize(policies); ++policy) {
-    const bool plans = make_planner(policies[policy]) != nullptr;
+    const bool plans = is_planner(policies[policy], options);
     for (int map = 0; map < std::ssize(arenas); ++map) {
       const std::vector<NodeId>& starts = arenas[map].starts;
       std::vector<int> order(starts.size());
@@ -134,14 +144,14 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
   for (auto& of_policy : coverages) {
     for (std::size_t map = 0; map < arenas.size(); ++map) of_policy[map].resize(arenas[map].starts.size());
   }
-  const std::vector<Block> blocks = make_blocks(arenas, options.policies);
+  const std::vector<Block> blocks = make_blocks(arenas, options);
   std::vector<std::uint8_t> out_of_reach(blocks.size());
   parallel_for(static_cast<int>(blocks.size()), [&](int b) {
     const Block& block = blocks[b];
     const Arena& arena = arenas[block.map];
     const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
-    const auto policy = make_policy(options.policies[block.policy],
-                                    derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0])));
+    const std::uint64_t block_seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0]));
+    const auto policy = make_policy(options.policies[block.policy], block_seed, options);
     std::vector<NodeId> starts;
     for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
     const EpisodeOptions episode_options{

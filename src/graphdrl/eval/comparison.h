@@ -1,11 +1,15 @@
 // The comparison of policies on maps: the paper's Table 2, the ladder beside it, and the optimum.
 #pragma once
 
+#include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "graphdrl/env/budget.h"
+#include "graphdrl/env/policy.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/eval/statistics.h"
 
@@ -30,6 +34,8 @@ struct ComparisonOptions {
   int episodes = 30;                  // per map, from its own start, else random ones, the same for every policy
   bool all_starts = false;            // instead: every valid node once
   std::uint64_t seed = 1;
+  // Policies of the caller's own, by names of `policies` that are theirs. Several may be at work at once.
+  std::map<std::string, std::function<std::unique_ptr<Policy>()>> own_policies = {};
 };
 
 inline constexpr int kOptimumMaxNodes = 25;  // valid nodes up to which the optimum is computed

@@ -1,0 +1,42 @@
+// The extension: the library in Python's words. python/graphdrl/ makes it comfortable.
+#include <exception>
+
+#include "bindings.h"
+#include "graphdrl/base/error.h"
+#include "graphdrl/base/parallel.h"
+
+namespace graphdrl::python {
+
+void bind_callbacks(nb::module_& module);
+
+NodeId checked_node(const World& world, std::int64_t node, std::string_view role) {
+  const bool there = node >= 0 && node < world.node_count();
+  if (there && !world.is_blocked(static_cast<NodeId>(node))) return static_cast<NodeId>(node);
+  throw Error({.what = std::string(role) + (there ? " on an obstacle" : " outside the map"),
+               .expected = "a valid node",
+               .got = std::to_string(node),
+               .where = world.name()});
+}
+
+NB_MODULE(_core, module) {
+  module.doc() = "The extension behind the package graphdrl.";
+  module.attr("__version__") = GRAPHDRL_VERSION;
+  nb::exception<Error>(module, "Error", PyExc_ValueError).doc() =
+      "What a caller can get wrong: an argument, a file. Its text is one line.";
+  module.def(
+      "set_threads",
+      [](int count) {
+        if (count < 1 || count > 1024) {
+          throw Error({.what = "bad number of threads", .expected = "1 to 1024", .got = std::to_string(count)});
+        }
+        set_threads(count);
+      },
+      nb::arg("count"), "How many threads one call may use; 1 at first. Results do not depend on it.");
+  module.def("threads", &threads, "How many threads one call may use.");
+  bind_worlds(module);
+  bind_callbacks(module);
+  bind_planning(module);
+  bind_evaluation(module);
+}
+
+}  // namespace graphdrl::python

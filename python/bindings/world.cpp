@@ -1,0 +1,205 @@
+#include <cmath>
+
+#include "bindings.h"
+#include "graphdrl/base/error.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/env/world_families.h"
+#include "graphdrl/report/picture.h"
+
+namespace graphdrl::python {
+namespace {
+
+// Parts of what a world is made of, as Python keeps them in pickles.
+using GridFrameState = std::tuple<double, double, double, double, std::string>;  // cell size, origin x, y, yaw, unit
+using GivenState = std::tuple<std::optional<double>, NodeId, NodeId>;
+
+World grid(std::string name, const InArray<bool, nb::ndim<2>>& blocked, bool diagonals, bool cut_corners,
+           const std::optional<GridFrameState>& frame) {
+  if (blocked.size() == 0 || blocked.size() > 1'000'000'000) {
+    throw Error({.what = "bad size of a grid", .expected = "1 to 1000000000 cells", .where = name});
+  }
+  GridMap map{.rows = static_cast<int>(blocked.shape(0)),
+              .cols = static_cast<int>(blocked.shape(1)),
+              .blocked = std::vector<bool>(blocked.data(), blocked.data() + blocked.size()),
+              .diagonals = diagonals,
+              .cut_corners = cut_corners};
+  if (frame) {
+    const auto& [size, x, y, yaw, unit] = *frame;
+    if (!(size > 0) || !std::isfinite(size) || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(yaw)) {
+      throw Error({.what = "bad frame of a grid", .expected = "finite numbers, a cell size above 0", .where = name});
+    }
+    map.frame = GridFrame{.cell_size = size, .origin = {x, y}, .yaw = yaw, .unit = unit};
+  }
+  return World(std::move(name), std::move(map));
+}
+
+void require_length(std::size_t length, std::size_t nodes, const char* what) {
+  if (length == 0 || length == nodes) return;
+  throw Error(
+      {.what = std::string("bad length of ") + what, .expected = std::to_string(nodes), .got = std::to_string(length)});
+}
+
+World graph(std::string name, std::int64_t node_count, const InArray<std::int64_t, nb::shape<-1, 2>>& edges,
+            const InArray<double, nb::ndim<1>>& costs, bool directed, const InArray<bool, nb::ndim<1>>& blocked,
+            std::vector<std::string> labels, const InArray<double, nb::ndim<1>>& prizes,
+            const InArray<double, nb::shape<-1, 2>>& places, const std::string& unit, const GivenState& given) {
+  if (node_count < 1 || node_count > 1'000'000'000) {
+    throw Error({.what = "bad number of nodes", .expected = "1 to 1000000000", .got = std::to_string(node_count)});
+  }
+  const auto n = static_cast<std::size_t>(node_count);
+  require_length(costs.size(), edges.shape(0), "costs");
+  require_length(blocked.size(), n, "blocked");
+  require_length(labels.size(), n, "labels");
+  require_length(prizes.size(), n, "prizes");
+  require_length(places.size() / 2, n, "places");
+  std::vector<Edge> list;
+  list.reserve(edges.shape(0));
+  for (std::size_t i = 0; i < edges.shape(0); ++i) {
+    const std::int64_t a = edges.data()[2 * i];
+    const std::int64_t b = edges.data()[2 * i + 1];
+    if (std::min(a, b) < 0 || std::max(a, b) >= node_count) {
+      throw Error({.what = "an edge outside the graph",
+                   .expected = "nodes from 0 to " + std::to_string(node_count - 1),
+                   .got = std::to_string(a) + ", " + std::to_string(b)});
+    }
+    list.push_back({static_cast<NodeId>(a), static_cast<NodeId>(b), costs.size() > 0 ? costs.data()[i] : 1.0});
+  }
+  for (const double prize : values_of<double>(prizes)) {
+    if (!std::isfinite(prize) || prize < 0) {
+      throw Error({.what = "bad prize", .expected = "a number from 0 up", .got = std::to_string(prize)});
+    }
+  }
+  Places points{.points = {}, .unit = unit};
+  for (std::size_t i = 0; i < places.size() / 2; ++i) {
+    points.points.push_back({places.data()[2 * i], places.data()[2 * i + 1]});
+    if (!std::isfinite(points.points.back().x) || !std::isfinite(points.points.back().y)) {
+      throw Error({.what = "bad coordinates of node " + std::to_string(i), .expected = "finite numbers"});
+    }
+  }
+  const auto count = static_cast<NodeId>(node_count);
+  Graph made = Graph::from_edges(count, list, directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  const auto& [budget, start, end] = given;
+  return World(std::move(name), std::move(made),
+               blocked.size() > 0 ? std::vector<bool>(blocked.data(), blocked.data() + n) : std::vector<bool>(n),
+               std::move(labels), {prizes.data(), prizes.data() + prizes.size()},
+               {.budget = budget, .start = start, .end = end}, std::move(points));
+}
+
+World from_file(const std::string& path, const std::string& cost_attribute, int cell_pixels, bool unknown_is_free,
+                double robot_radius, std::optional<double> cell_size, int connectivity, bool cut_corners,
+                const nb::object& note) {
+  if (connectivity != 4 && connectivity != 8) {
+    throw Error({.what = "bad connectivity", .expected = "4 or 8", .got = std::to_string(connectivity)});
+  }
+  if (!(robot_radius >= 0) || (cell_size && !(*cell_size > 0)) || cell_pixels < 1) {
+    throw Error({.what = "bad option of a map", .expected = "cell sizes above 0, a radius from 0 up", .where = path});
+  }
+  MapOptions options{.cost_attribute = cost_attribute,
+                     .cell_pixels = cell_pixels,
+                     .unknown_is_free = unknown_is_free,
+                     .robot_radius = robot_radius,
+                     .cell_size = cell_size,
+                     .diagonals = connectivity == 8,
+                     .cut_corners = cut_corners};
+  std::vector<std::string> notes;
+  options.note = [&](const std::string& text) { notes.push_back(text); };
+  std::optional<World> world;
+  {
+    const nb::gil_scoped_release unlocked;
+    world = load_one_world(path, options);
+  }
+  for (const std::string& text : notes) note(text);
+  return *world;
+}
+
+World random(const std::string& family, int size, std::uint64_t seed, bool weighted, bool directed,
+             std::optional<double> blocked) {
+  Rng rng(seed);
+  return random_world({.family = family, .size = size, .weighted = weighted, .directed = directed, .blocked = blocked},
+                      rng);
+}
+
+std::vector<std::uint8_t> bytes_of(const std::vector<bool>& flags) {
+  return {flags.begin(), flags.end()};
+}
+
+// The edges of the graph with its blocked nodes: [2E], [E].
+std::tuple<OutArray<std::int64_t>, OutArray<double>> edges_of(const World& world) {
+  std::vector<std::int64_t> ends;
+  std::vector<double> costs;
+  for (const Edge& edge : world.graph().edges()) {
+    ends.push_back(edge.a);
+    ends.push_back(edge.b);
+    costs.push_back(edge.cost);
+  }
+  return {to_numpy(std::move(ends)), to_numpy(std::move(costs))};
+}
+
+OutArray<double> places_of(const World& world) {
+  std::vector<double> values;
+  for (NodeId node = 0; world.has_places() && node < world.node_count(); ++node) {
+    values.push_back(world.place(node).x);
+    values.push_back(world.place(node).y);
+  }
+  return to_numpy(std::move(values));
+}
+
+std::optional<std::tuple<int, int, bool, bool, std::optional<GridFrameState>>> grid_of(const World& world) {
+  if (!world.has_cells()) return std::nullopt;
+  const GridMap& map = *world.map();
+  std::optional<GridFrameState> frame;
+  if (map.frame) {
+    frame = {map.frame->cell_size, map.frame->origin.x, map.frame->origin.y, map.frame->yaw, map.frame->unit};
+  }
+  return std::tuple{map.rows, map.cols, map.diagonals, map.cut_corners, frame};
+}
+
+}  // namespace
+
+void bind_worlds(nb::module_& module) {
+  nb::class_<World>(module, "World", "A graph with its blocked nodes and prizes. Immutable; nodes are numbers.")
+      .def_static("grid", &grid, nb::arg("name"), nb::arg("blocked"), nb::arg("diagonals"), nb::arg("cut_corners"),
+                  nb::arg("frame").none())
+      .def_static("graph", &graph, nb::arg("name"), nb::arg("node_count"), nb::arg("edges"), nb::arg("costs"),
+                  nb::arg("directed"), nb::arg("blocked"), nb::arg("labels"), nb::arg("prizes"), nb::arg("places"),
+                  nb::arg("unit"), nb::arg("given"))
+      .def_static("from_file", &from_file, nb::arg("path"), nb::arg("cost_attribute"), nb::arg("cell_pixels"),
+                  nb::arg("unknown_is_free"), nb::arg("robot_radius"), nb::arg("cell_size").none(),
+                  nb::arg("connectivity"), nb::arg("cut_corners"), nb::arg("note"))
+      .def_static("random", &random, nb::arg("family"), nb::arg("size"), nb::arg("seed"), nb::arg("weighted"),
+                  nb::arg("directed"), nb::arg("blocked").none())
+      .def_prop_ro("name", &World::name)
+      .def_prop_ro("node_count", &World::node_count)
+      .def_prop_ro("edge_count", [](const World& world) { return world.graph().edge_count(); })
+      .def_prop_ro("valid_count", &World::valid_count)
+      .def_prop_ro(
+          "valid_nodes",
+          [](const World& world) {
+            return to_numpy(std::vector(world.valid_nodes().begin(), world.valid_nodes().end()));
+          },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "blocked", [](const World& world) { return to_numpy(bytes_of(world.blocked())); }, nb::rv_policy::automatic)
+      .def_prop_ro("labels", &World::labels)
+      .def_prop_ro(
+          "prizes", [](const World& world) { return to_numpy(world.prizes()); }, nb::rv_policy::automatic)
+      .def_prop_ro("total_prize", &World::total_prize)
+      .def_prop_ro("places", &places_of, nb::rv_policy::automatic)
+      .def_prop_ro("unit", [](const World& world) { return world.has_places() ? world.unit() : std::string(); })
+      .def_prop_ro("directed", [](const World& world) { return world.open().directed(); })
+      .def_prop_ro("weighted", [](const World& world) { return world.open().weighted(); })
+      .def_prop_ro("complete", [](const World& world) { return world.open().is_complete(); })
+      .def_prop_ro("grid_state", &grid_of)
+      .def_prop_ro("given",
+                   [](const World& world) {
+                     const GivenTask& given = world.given();
+                     return GivenState{given.budget, given.start, given.end};
+                   })
+      .def_prop_ro("edges", &edges_of, nb::rv_policy::automatic)
+      .def("svg", [](const World& world) { return Picture(world, {}, world.name(), {}).svg(); });
+  std::vector<std::string> names;
+  for (const WorldFamily& family : world_families()) names.emplace_back(family.name);
+  module.attr("FAMILIES") = nb::cast(names);
+}
+
+}  // namespace graphdrl::python

@@ -1,0 +1,222 @@
+"""Plans, bounds and comparisons of policies."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._core import Error
+from .world import Node, OnProgress, World, shown
+
+Budget = float | int | str
+OwnPolicy = Callable[[_core.State], int | None]
+
+
+class Plan:
+    """One walk, and how far from the best it may be."""
+
+    __slots__ = ("_core", "world")
+
+    def __init__(self, world: World, core: _core.PlanReport) -> None:
+        self.world = world
+        self._core = core
+
+    @property
+    def walk(self) -> list[Node]:
+        """Every step, the start first, in the caller's own labels."""
+        return self.world.names(self.nodes)
+
+    @property
+    def nodes(self) -> NDArray[np.int32]:
+        """The same as numbers. Shape [steps + 1]."""
+        return self._core.walk
+
+    @property
+    def costs(self) -> NDArray[np.float64]:
+        """What was spent at every step. Shape [steps + 1]."""
+        return self._core.costs
+
+    @property
+    def visited(self) -> int:
+        """How many nodes it visits, the start included."""
+        return self._core.visited
+
+    @property
+    def coverage(self) -> float:
+        """Of all nodes that are not blocked, a fraction."""
+        return self.visited / self.world.valid_count
+
+    @property
+    def prize(self) -> float:
+        """Of all nodes visited; their number where there are no prizes."""
+        return self._core.prize
+
+    @property
+    def cost(self) -> float:
+        return self._core.cost
+
+    @property
+    def budget(self) -> float:
+        return self._core.budget
+
+    @property
+    def bound(self) -> float:
+        """No walk has a higher prize."""
+        return self._core.bound
+
+    @property
+    def optimal(self) -> bool:
+        """Whether that is proved of this one."""
+        return self._core.optimal
+
+    @property
+    def policy(self) -> str:
+        return self._core.policy
+
+    @property
+    def elapsed_s(self) -> float:
+        """Seconds that the plan and its bound took."""
+        return self._core.elapsed_s
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the plan in the format of the ending: as `graphdrl plan --out`."""
+        self._core.save(os.fspath(path))
+
+    def to_json(self) -> str:
+        """The document that `graphdrl plan --json` prints."""
+        return self._core.json()
+
+    def to_dict(self) -> dict[str, Any]:
+        return json.loads(self.to_json())
+
+    def _repr_svg_(self) -> str:
+        return self._core.svg()
+
+    def __repr__(self) -> str:
+        return "\n".join([f"<Plan {self.world.name}, {self.policy}>", *self._core.summary])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (self.world, self.nodes, self._core.claims)
+
+    def __copy__(self) -> Plan:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Plan:
+        return self
+
+
+def _restore(world: World, walk: NDArray[np.int32], claims: tuple[Any, ...]) -> Plan:
+    return Plan(world, _core.PlanReport.restore(world._core, walk, claims))
+
+
+def _budget_text(budget: Budget) -> str:
+    if isinstance(budget, str):
+        return budget
+    try:
+        return repr(float(budget))
+    except (TypeError, ValueError) as error:
+        raise Error(f"bad budget: expected a number from 0 up, or text like '1.1x', got {shown(budget)}") from error
+
+
+def _numbers(world: World, start: Node | None, end: Node | None) -> tuple[int | None, int | None]:
+    """The start and the end as numbers; "start" as an end is the start, where no node is called so."""
+    _, given_start, given_end = world._core.given
+    if start is not None:
+        first = world.number(start)
+    else:
+        first = given_start if given_start >= 0 else int(world._core.valid_nodes[0])
+    if end is None:
+        return first, given_end if given_end >= 0 else None
+    if isinstance(end, str) and end in ("start", "anywhere") and (world._numbers is None or end not in world._numbers):
+        return first, first if end == "start" else None
+    return first, world.number(end)
+
+
+def _require_world(world: World) -> World:
+    if not isinstance(world, World):
+        raise TypeError(f"expected a graphdrl.World, got {type(world).__name__}")
+    return world
+
+
+def plan(
+    world: World,
+    budget: Budget | None = None,
+    start: Node | None = None,
+    end: Node | None = None,
+    policy: str = "search",
+    *,
+    time_limit: float | None = None,
+    seed: int = 1,
+    on_progress: OnProgress | None = None,
+) -> Plan:
+    """Plans one walk that visits as much as it can within the budget.
+
+    budget: in units of cost, or a text as "1.1x", a multiple of the nodes; where it is None, that of the world's file.
+    start: a node; by default the file's, else the first one that is not blocked. end: a node, "start" or "anywhere";
+    by default the file's, else anywhere. policy: as `graphdrl plan --policy`. time_limit: seconds for all of it.
+    on_progress(visited, bound): called now and then.
+
+    Other threads go on meanwhile. Ctrl-C ends it, and every other plan of the process too. Raises Error.
+    """
+    core = _require_world(world)._core
+    if budget is None:
+        budget = core.given[0]
+    if budget is None:
+        raise Error(f"{world.name}: no budget is given")
+    first, last = _numbers(world, start, end)
+    return Plan(world, _core.plan(core, _budget_text(budget), first, last, policy, time_limit, seed, on_progress))
+
+
+def upper_bound(
+    world: World,
+    budget: Budget,
+    start: Node | None = None,
+    end: Node | None = None,
+    *,
+    time_limit: float | None = None,
+) -> float:
+    """What no walk's prize exceeds: nodes, where there are no prizes. Raises Error."""
+    first, last = _numbers(_require_world(world), start, end)
+    return _core.upper_bound(world._core, _budget_text(budget), first, last, time_limit)
+
+
+def evaluate(
+    worlds: World | Iterable[World],
+    policies: str | OwnPolicy | Iterable[str | OwnPolicy] = ("nearest", "explorer", "search"),
+    budget: Budget | None = None,
+    *,
+    end: str = "",
+    episodes: int = 30,
+    all_starts: bool = False,
+    seed: int = 1,
+) -> list[dict[str, Any]]:
+    """Compares policies on worlds; rows for `pandas.DataFrame`, coverages in percent, as `graphdrl evaluate --json`.
+
+    A policy is a name, as on the command line, or a callable of your own: it gets a `State` and gives the number of the
+    node to go to, one of `state.moves`, or None to stop. Every policy has the same starts: each node once with
+    `all_starts`, else the file's or random ones. Raises Error, and what your policy raises.
+    """
+    worlds = [worlds] if isinstance(worlds, World) else list(worlds)
+    chosen = [policies] if isinstance(policies, str) or callable(policies) else list(policies)
+    if not isinstance(episodes, int) or not 1 <= episodes <= 1_000_000:
+        raise Error(f"bad number of episodes: expected 1 to 1000000, got {shown(episodes)}")
+    names: list[str] = []
+    own: dict[str, OwnPolicy] = {}
+    for policy in chosen:
+        if callable(policy):
+            name = getattr(policy, "__name__", type(policy).__name__)
+            while name in names:
+                name += "'"
+            own[name] = policy
+            names.append(name)
+        else:
+            names.append(policy)
+    text = None if budget is None else _budget_text(budget)
+    cores = [_require_world(world)._core for world in worlds]
+    return _core.evaluate(cores, names, own, text, end, episodes, all_starts, seed)

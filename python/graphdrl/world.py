@@ -1,0 +1,445 @@
+"""Worlds: graphs with costs, prizes and blocked nodes, made from what Python has."""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from ._core import Error
+
+_COST_NAMES = ("weight", "cost", "length", "distance")
+_PRIZE_NAMES = ("prize", "score")
+_PLACE_NAMES = (("x", "y"), ("lon", "lat"))
+_NO_NODE = -1
+
+Node = Hashable
+
+
+def shown(value: Any) -> str:
+    """A value on one line of an error."""
+    return " ".join(repr(value).split())[:100]
+
+
+def _array(values: ArrayLike, dtype: type, name: str, kinds: str) -> NDArray[Any]:
+    """The values as a contiguous array; `kinds`: the kinds of dtypes that it may have had."""
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise Error(f"bad {name}: expected an array of numbers") from error
+    if array.size and array.dtype.kind not in kinds:
+        raise Error(f"bad {name}: expected an array of {np.dtype(dtype).name}, got {array.dtype}")
+    return np.ascontiguousarray(array, dtype=dtype) if array.size else np.empty(array.shape, dtype)
+
+
+def _flat(values: ArrayLike | None, dtype: type, name: str, kinds: str, count: int) -> NDArray[Any]:
+    if values is None:
+        return np.empty(0, dtype)
+    array = _array(values, dtype, name, kinds)
+    if array.shape != (count,):
+        raise Error(f"bad shape of {name}: expected ({count},), got {array.shape}")
+    return array
+
+
+class World:
+    """A graph that can be walked. Immutable, so any number of plans and threads may share one.
+
+    Nodes are what the caller calls them: any hashable label of a graph, `(row, column)` on a grid, else numbers from 0
+    up. The arrays here go by number, in the order of `nodes`.
+    """
+
+    __slots__ = ("_core", "_labels", "_numbers")
+
+    def __init__(self, core: _core.World, labels: Sequence[Node] | None = None) -> None:
+        """Use `World.from_…()` instead."""
+        if not isinstance(core, _core.World):
+            raise TypeError("a World is made by World.from_grid(), from_networkx(), from_edges(), from_file() …")
+        self._core = core
+        self._labels = list(labels) if labels is not None else None
+        self._numbers: dict[Node, int] | None = None
+        if self._labels is not None:
+            try:
+                self._numbers = {label: number for number, label in enumerate(self._labels)}
+            except TypeError as error:
+                raise Error(f"bad label: {error}") from error
+            if len(self._numbers) != core.node_count:
+                raise Error("bad labels: expected as many different ones as nodes")
+
+    @classmethod
+    def from_grid(
+        cls,
+        cells: ArrayLike | str | Iterable[str],
+        *,
+        diagonals: bool = False,
+        cut_corners: bool = False,
+        cell_size: float | None = None,
+        origin: tuple[float, float] = (0.0, 0.0),
+        unit: str = "m",
+        name: str = "grid",
+    ) -> World:
+        """A grid of cells: an array [rows, columns], true (not 0) where blocked; or text, '#' blocked and '.' free.
+
+        Row 0 is the upper one. Steps lead left, up, right and down, and with `diagonals` to eight cells, at a cost of
+        √2; they pass blocked corners with `cut_corners`. `cell_size`, in `unit`, and `origin`, the lower left corner of
+        the grid, place it in the plane.
+        """
+        if isinstance(cells, str):
+            cells = cells.split("\n")
+        if isinstance(cells, (list, tuple)) and cells and all(isinstance(row, str) for row in cells):
+            rows = [row.strip() for row in cells if row.strip()]
+            if {len(row) for row in rows} != {len(rows[0]) if rows else 0}:
+                raise Error("bad grid: expected rows of one length")
+            strange = {char for row in rows for char in row} - set("#.")
+            if strange:
+                raise Error(f"bad grid: expected '#' and '.', got {min(strange)!r}")
+            cells = [[char == "#" for char in row] for row in rows]
+        array = _array(cells, bool, "grid", "biu")
+        if array.ndim != 2:
+            raise Error(f"bad shape of a grid: expected two dimensions, got {array.ndim}")
+        frame = None if cell_size is None else (float(cell_size), float(origin[0]), float(origin[1]), 0.0, unit)
+        return cls(_core.World.grid(name, array, diagonals, cut_corners, frame))
+
+    @classmethod
+    def from_edges(
+        cls,
+        edges: ArrayLike,
+        costs: ArrayLike | None = None,
+        *,
+        node_count: int | None = None,
+        directed: bool = False,
+        blocked: ArrayLike | None = None,
+        prizes: ArrayLike | None = None,
+        places: ArrayLike | None = None,
+        unit: str = "",
+        labels: Sequence[Node] | None = None,
+        name: str = "graph",
+    ) -> World:
+        """A graph from arrays.
+
+        edges: [E, 2], numbers of nodes; loops are left out, of parallel edges the cheapest stays. costs: [E], from 0
+        up; 1 each where there are none. node_count: N; by default one more than the largest. blocked: [N], true
+        where nobody may go. prizes: [N], of first visits; 1 each where there are none. places: [N, 2], x and y
+        upward, in `unit`. labels: N different ones.
+        """
+        ends = _array(edges, np.int64, "edges", "iu")
+        if ends.size == 0:
+            ends = np.empty((0, 2), np.int64)
+        if ends.ndim != 2 or ends.shape[1] != 2:
+            raise Error(f"bad shape of edges: expected (E, 2), got {ends.shape}")
+        if labels is not None:
+            labels = list(labels.tolist() if isinstance(labels, np.ndarray) else labels)
+        if node_count is None:
+            node_count = len(labels) if labels is not None else int(ends.max(initial=-1)) + 1
+        points = np.empty((0, 2))
+        if places is not None:
+            points = _array(places, np.float64, "places", "fiu")
+            if points.shape != (node_count, 2):
+                raise Error(f"bad shape of places: expected ({node_count}, 2), got {points.shape}")
+        core = _core.World.graph(
+            name,
+            node_count,
+            ends,
+            _flat(costs, np.float64, "costs", "fiu", len(ends)),
+            directed,
+            _flat(blocked, bool, "blocked", "biu", node_count),
+            _texts(labels),
+            _flat(prizes, np.float64, "prizes", "fiu", node_count),
+            points,
+            unit,
+            (None, _NO_NODE, _NO_NODE),
+        )
+        return cls(core, labels)
+
+    @classmethod
+    def from_networkx(
+        cls,
+        graph: Any,
+        *,
+        cost: str | None = None,
+        prize: str | None = None,
+        blocked: str = "blocked",
+        name: str | None = None,
+    ) -> World:
+        """A graph of networkx; the world does not change with it afterwards.
+
+        cost: the edges' attribute, by default the first of weight, cost, length and distance that an edge has; 1 where
+        an edge has none. prize: the nodes', by default prize or score. blocked: the nodes' attribute for obstacles.
+        Coordinates are `pos`, or `x` and `y`, or `lon` and `lat`. Of parallel edges the cheapest stays.
+        """
+        labels = list(graph.nodes)
+        numbers = {label: number for number, label in enumerate(labels)}
+        links = list(graph.edges(data=True))
+        cost = cost or next((key for key in _COST_NAMES if any(key in data for _, _, data in links)), None)
+        data = [graph.nodes[label] for label in labels]
+        prize = prize or next((key for key in _PRIZE_NAMES if any(key in of_node for of_node in data)), None)
+        places, unit = _places_of(data)
+        return cls.from_edges(
+            [(numbers[a], numbers[b]) for a, b, _ in links],
+            None if cost is None else [_number(of_edge.get(cost, 1), cost) for _, _, of_edge in links],
+            node_count=len(labels),
+            directed=graph.is_directed(),
+            blocked=[bool(of_node.get(blocked, False)) for of_node in data],
+            prizes=None if prize is None else [_number(of_node.get(prize, 1), prize) for of_node in data],
+            places=places,
+            unit=unit,
+            labels=None if labels == list(range(len(labels))) and all(type(x) is int for x in labels) else labels,
+            name=name or str(graph.name or "graph"),
+        )
+
+    @classmethod
+    def from_scipy(cls, matrix: Any, *, directed: bool = True, name: str = "graph") -> World:
+        """A graph from a sparse matrix [N, N] of SciPy: an edge for every entry, which is its cost.
+
+        Undirected (`directed=False`): an entry above or below the diagonal is enough.
+        """
+        entries = matrix.tocoo()
+        if entries.ndim != 2 or entries.shape[0] != entries.shape[1]:
+            raise Error(f"bad shape of a matrix: expected a square one, got {entries.shape}")
+        ends = np.stack([entries.row, entries.col], axis=1)
+        return cls.from_edges(ends, entries.data, node_count=entries.shape[0], directed=directed, name=name)
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        cost_attribute: str = "",
+        cell_pixels: int = 1,
+        unknown_is_free: bool = False,
+        robot_radius: float = 0.0,
+        cell_size: float | None = None,
+        connectivity: int = 4,
+        cut_corners: bool = False,
+    ) -> World:
+        """A map from a file in any format of `graphdrl maps convert --help`, or `paper:a` to `paper:j`.
+
+        The options are those of the command line. What a user should know of the reading comes as a warning.
+        """
+        core = _core.World.from_file(
+            os.fspath(path), cost_attribute, cell_pixels, unknown_is_free, robot_radius, cell_size, connectivity,
+            cut_corners, _warn,
+        )  # fmt: skip
+        return cls(core, core.labels or None)
+
+    @classmethod
+    def random(
+        cls,
+        family: str,
+        size: int,
+        seed: int = 0,
+        *,
+        weighted: bool = False,
+        directed: bool = False,
+        blocked: float | None = None,
+    ) -> World:
+        """A connected random world of a family of `graphdrl.FAMILIES`.
+
+        size: the side of a grid, else the number of nodes. blocked: of `obstacles`, the probability of a blocked cell.
+        """
+        return cls(_core.World.random(family, size, seed, weighted, directed, blocked))
+
+    @property
+    def name(self) -> str:
+        return self._core.name
+
+    @property
+    def is_grid(self) -> bool:
+        """Whether it has cells."""
+        return self._core.grid_state is not None
+
+    @property
+    def shape(self) -> tuple[int, int] | None:
+        """Rows and columns of a grid."""
+        grid = self._core.grid_state
+        return None if grid is None else (grid[0], grid[1])
+
+    @property
+    def node_count(self) -> int:
+        """Nodes, blocked ones included."""
+        return self._core.node_count
+
+    @property
+    def edge_count(self) -> int:
+        """Edges, those of blocked nodes included."""
+        return self._core.edge_count
+
+    @property
+    def valid_count(self) -> int:
+        """Nodes that are not blocked."""
+        return self._core.valid_count
+
+    @property
+    def directed(self) -> bool:
+        return self._core.directed
+
+    @property
+    def weighted(self) -> bool:
+        """Whether some edge costs other than 1."""
+        return self._core.weighted
+
+    @property
+    def total_prize(self) -> float:
+        """Of all nodes that are not blocked; their number where there are no prizes."""
+        return self._core.total_prize
+
+    @property
+    def nodes(self) -> list[Node]:
+        """What the nodes are called, in the order of their numbers."""
+        return self.names(range(self.node_count))
+
+    @property
+    def blocked(self) -> NDArray[np.bool_]:
+        """[N]; [rows, columns] on a grid."""
+        flags = self._core.blocked.view(np.bool_)
+        return flags if self.shape is None else flags.reshape(self.shape)
+
+    @property
+    def prizes(self) -> NDArray[np.float64]:
+        """[N], of first visits."""
+        prizes = self._core.prizes
+        return prizes if len(prizes) else np.ones(self.node_count)
+
+    @property
+    def places(self) -> NDArray[np.float64] | None:
+        """[N, 2], x and y, where they are known."""
+        places = self._core.places
+        return places.reshape(-1, 2) if len(places) else None
+
+    def edges(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """The edges [E, 2], numbers of nodes, an undirected one from its lower node; and their costs [E]."""
+        ends, costs = self._core.edges
+        return ends.reshape(-1, 2), costs
+
+    def names(self, numbers: Iterable[int]) -> list[Node]:
+        """What nodes are called, by their numbers."""
+        if self._labels is not None:
+            return [self._labels[number] for number in numbers]
+        if self.shape is not None:
+            columns = self.shape[1]
+            return [divmod(int(number), columns) for number in numbers]
+        return [int(number) for number in numbers]
+
+    def number(self, node: Node) -> int:
+        """The number of a node. Raises Error where there is no such node."""
+        if self._numbers is not None:
+            try:
+                found = self._numbers.get(node)
+            except TypeError:
+                found = None
+            if found is not None:
+                return found
+        elif isinstance(node, (int, np.integer)) and not isinstance(node, bool):
+            if 0 <= node < self.node_count:
+                return int(node)
+        elif self.shape is not None and isinstance(node, (tuple, list, np.ndarray)) and len(node) == 2:
+            row, column = node
+            if all(isinstance(x, (int, np.integer)) for x in node):
+                if 0 <= row < self.shape[0] and 0 <= column < self.shape[1]:
+                    return int(row) * self.shape[1] + int(column)
+        raise Error(f"{self.name}: no such node: {shown(node)}")
+
+    def to_networkx(self) -> Any:
+        """A Graph or DiGraph of networkx: cost, prize, blocked and pos are attributes."""
+        import networkx
+
+        graph = networkx.DiGraph() if self.directed else networkx.Graph()
+        names = self.nodes
+        prizes, blocked, places = self.prizes, self.blocked.ravel(), self.places
+        for number, label in enumerate(names):
+            data: dict[str, Any] = {"prize": float(prizes[number]), "blocked": bool(blocked[number])}
+            if places is not None:
+                data["pos"] = (float(places[number][0]), float(places[number][1]))
+            graph.add_node(label, **data)
+        ends, costs = self.edges()
+        for (a, b), cost in zip(ends.tolist(), costs.tolist(), strict=True):
+            graph.add_edge(names[a], names[b], cost=cost)
+        return graph
+
+    def to_scipy(self) -> Any:
+        """The costs as a sparse matrix [N, N] (CSR), both ways where edges lead both ways."""
+        import scipy.sparse
+
+        ends, costs = self.edges()
+        rows, columns = ends[:, 0], ends[:, 1]
+        if not self.directed:
+            rows, columns = np.concatenate([rows, columns]), np.concatenate([columns, rows])
+            costs = np.concatenate([costs, costs])
+        return scipy.sparse.csr_array((costs, (rows, columns)), shape=(self.node_count, self.node_count))
+
+    def __repr__(self) -> str:
+        size = f"{self.shape[0]}x{self.shape[1]} cells" if self.shape else f"{self.node_count} nodes"
+        return f"<World {self.name}: {size}, {self.valid_count} free, {self.edge_count} edges>"
+
+    def _repr_svg_(self) -> str:
+        return self._core.svg()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        core = self._core
+        if core.complete:
+            raise Error(f"{self.name}: a complete graph of a file is not pickled: read the file again")
+        grid = core.grid_state
+        if grid is not None:
+            _, _, diagonals, cut_corners, frame = grid
+            return _restore_grid, (core.name, np.array(self.blocked), diagonals, cut_corners, frame)
+        ends, costs = self.edges()
+        state = (
+            core.name, core.node_count, ends, costs, core.directed, self.blocked, core.labels, core.prizes,
+            core.places.reshape(-1, 2), core.unit, core.given,
+        )  # fmt: skip
+        return _restore_graph, (state, self._labels)
+
+    def __copy__(self) -> World:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> World:
+        return self
+
+
+def _restore_grid(name: str, blocked: NDArray[np.bool_], diagonals: bool, cut_corners: bool, frame: Any) -> World:
+    return World(_core.World.grid(name, blocked, diagonals, cut_corners, frame))
+
+
+def _restore_graph(state: tuple[Any, ...], labels: Sequence[Node] | None) -> World:
+    return World(_core.World.graph(*state), labels)
+
+
+def _warn(text: str) -> None:
+    caller, level = sys._getframe(), 1
+    while caller.f_back is not None and caller.f_globals.get("__name__", "").startswith("graphdrl"):
+        caller, level = caller.f_back, level + 1
+    warnings.warn(text, stacklevel=level)
+
+
+def _number(value: Any, name: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise Error(f"bad {name}: expected a number, got {shown(value)}") from error
+
+
+def _texts(labels: Sequence[Node] | None) -> list[str]:
+    """The labels as texts, for pictures and files; none where they would not tell nodes apart."""
+    texts = [str(label) for label in labels or ()]
+    return texts if all(texts) and len(set(texts)) == len(texts) else []
+
+
+def _places_of(data: Sequence[dict[str, Any]]) -> tuple[NDArray[np.float64] | None, str]:
+    """Coordinates where every node has some, and their unit."""
+    if data and all("pos" in of_node for of_node in data):
+        pairs = [of_node["pos"] for of_node in data]
+        if all(len(pair) == 2 for pair in pairs):
+            return np.array([[_number(x, "pos") for x in pair] for pair in pairs]), ""
+    for x, y in _PLACE_NAMES:
+        if data and all(x in of_node and y in of_node for of_node in data):
+            unit = "degrees" if x == "lon" else ""
+            return np.array([[_number(of_node[x], x), _number(of_node[y], y)] for of_node in data]), unit
+    return None, ""
+
+
+OnProgress = Callable[[int, float], None]

@@ -1,0 +1,354 @@
+"""The Python package, beside the program and beside networkx."""
+
+import copy
+import json
+import os
+import pathlib
+import pickle
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import graphdrl
+import networkx as nx
+import numpy as np
+import pytest
+import scipy.sparse
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PROGRAM = pathlib.Path(os.environ["GRAPHDRL_BIN"]) / "graphdrl"
+FAMILIES = [
+    ("obstacles", 7, {}),
+    ("maze", 7, {}),
+    ("houses", 9, {}),
+    ("tree", 12, {"weighted": True}),
+    ("erdos-renyi", 14, {"directed": True}),
+    ("geometric", 20, {"weighted": True, "directed": True}),
+    ("watts-strogatz", 16, {}),
+    ("barabasi-albert", 14, {"weighted": True}),
+]
+
+
+def run_json(*arguments):
+    done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def neutral_worlds(count):
+    """Worlds of all families, as arrays: each is what a file of the command line holds, too."""
+    for i in range(count):
+        family, size, options = FAMILIES[i % len(FAMILIES)]
+        yield graphdrl.World.random(family, size, i, **options)
+
+
+def write_world(world, path):
+    if world.is_grid:
+        path.write_text("\n".join("".join("#" if cell else "." for cell in row) for row in world.blocked) + "\n")
+        return
+    ends, costs = world.edges()
+    path.write_text(
+        json.dumps(
+            {
+                "directed": world.directed,
+                "multigraph": False,
+                "nodes": [{"id": node} for node in range(world.node_count)],
+                "edges": [{"source": int(a), "target": int(b), "cost": c} for (a, b), c in zip(ends, costs.tolist())],
+            }
+        )
+    )
+
+
+def start_of(world):
+    return int(np.flatnonzero(~world.blocked.ravel())[0])
+
+
+def test_walks_are_those_of_the_program(tmp_path):
+    for i, world in enumerate(neutral_worlds(200)):
+        path = tmp_path / f"world-{i}.{'txt' if world.is_grid else 'json'}"
+        write_world(world, path)
+        expected = run_json("plan", path, "--budget", "0.6x", "--start", f"#{start_of(world)}", "--json")
+        answer = graphdrl.plan(world, "0.6x", start=world.names([start_of(world)])[0]).to_dict()
+        assert json.dumps(answer["walk"]) == json.dumps(expected["walk"]), path
+        assert answer["upper_bound"] == expected["upper_bound"]
+
+
+def test_labels_of_any_kind_come_back(tmp_path):
+    graph = nx.Graph()
+    labels = ["hall", ("kitchen", 2), frozenset({"attic"}), 3.5, b"cellar", 7]
+    for a, b in zip(labels, labels[1:]):
+        graph.add_edge(a, b, weight=2)
+    graph.nodes["hall"]["prize"] = 5
+    graph.nodes[7]["blocked"] = True
+    world = graphdrl.World.from_networkx(graph)
+    plan = graphdrl.plan(world, 20, start=("kitchen", 2), end="start")
+    assert plan.walk[0] == plan.walk[-1] == ("kitchen", 2)
+    assert set(plan.walk) == set(labels[:-1])
+    assert plan.prize == 9 and world.total_prize == 9 and plan.optimal
+    assert world.nodes == labels
+    back = world.to_networkx()
+    assert set(back.nodes) == set(labels) and back.edges["hall", ("kitchen", 2)]["cost"] == 2
+    graph.add_edge("hall", "shed")  # the world stays what it was
+    assert world.node_count == 6 and graphdrl.plan(world, 20, start="hall").walk[0] == "hall"
+
+
+def test_a_plan_is_a_walk_of_networkx():
+    for i in range(20):
+        graph = nx.connected_watts_strogatz_graph(30, 4, 0.3, seed=i)
+        rng = np.random.default_rng(i)
+        for _, _, data in graph.edges(data=True):
+            data["length"] = float(rng.uniform(0.5, 2))
+        plan = graphdrl.plan(graphdrl.World.from_networkx(graph), 20, policy="explorer")
+        cost = sum(graph.edges[a, b]["length"] for a, b in zip(plan.walk, plan.walk[1:]))
+        assert cost == pytest.approx(plan.cost) and cost <= 20 + 1e-6
+        assert plan.visited == len(set(plan.walk)) <= plan.bound
+        assert plan.costs[-1] == pytest.approx(cost)
+
+
+def test_grids():
+    world = graphdrl.World.from_grid("..#\n.#.\n...\n")
+    assert world.shape == (3, 3) and world.valid_count == 7
+    plan = graphdrl.plan(world, 7, start=(0, 1))
+    assert plan.walk[0] == (0, 1) and plan.nodes[0] == 1
+    assert graphdrl.plan(world, 7, start=1).walk == plan.walk
+    array = np.array(world.blocked)
+    assert graphdrl.plan(graphdrl.World.from_grid(array), 7, start=(0, 1)).walk == plan.walk
+    eight = graphdrl.World.from_grid(array, diagonals=True, cut_corners=True, cell_size=0.5, origin=(1, 2))
+    assert eight.edge_count > world.edge_count
+    assert eight.places[0].tolist() == [1.25, 3.25]
+    assert "<svg" in plan._repr_svg_() and "<svg" in world._repr_svg_()
+
+
+def test_sparse_matrices_of_scipy_go_both_ways():
+    matrix = scipy.sparse.random(20, 20, 0.3, random_state=1, format="csr") + scipy.sparse.eye(20, k=1)
+    matrix.setdiag(0)
+    matrix.eliminate_zeros()
+    world = graphdrl.World.from_scipy(matrix)
+    assert world.directed and (world.to_scipy() != matrix).nnz == 0
+    both = graphdrl.World.from_scipy(scipy.sparse.triu(matrix), directed=False)
+    assert (both.to_scipy() != both.to_scipy().T).nnz == 0
+
+
+@pytest.mark.parametrize("end", ["", "start"])
+def test_evaluations_are_those_of_the_program(end):
+    worlds = [graphdrl.World.from_file(f"paper:{letter}") for letter in "abc"]
+    rows = graphdrl.evaluate(worlds, ["nearest", "explorer", "random-walk"], 25, end=end, episodes=7, seed=3)
+    maps = [option for letter in "abc" for option in ("--maps", f"paper:{letter}")]
+    policies = [option for name in ("nearest", "explorer", "random-walk") for option in ("--policy", name)]
+    ends = ["--end", end] if end else []
+    expected = run_json("evaluate", *maps, *policies, "--budget", 25, "--episodes", 7, "--seed", 3, *ends, "--json")
+    for row, other in zip(rows, expected["rows"], strict=True):
+        for key in ("map", "policy", "valid_nodes", "budget", "episodes", "mean", "std", "best", "optimum"):
+            assert row[key] == other[key], (key, row)
+        assert other["ci95"] == (None if row["ci95_low"] is None else [row["ci95_low"], row["ci95_high"]])
+
+
+def test_own_policies():
+    world = graphdrl.World.from_file("paper:a")
+    kept = []
+
+    def first_new(state):
+        kept.append(state)
+        assert state.walk[-1] == state.position and state.spent == len(state.walk) - 1
+        assert state.visited_count == np.count_nonzero(state.visits)
+        return next((node for node in state.moves if state.visits[node] == 0), None)
+
+    rows = graphdrl.evaluate(world, ["nearest", first_new], all_starts=True)
+    assert [row["policy"] for row in rows] == ["nearest", "first_new"]
+    assert 20 < rows[1]["mean"] < rows[0]["mean"]
+    with pytest.raises(graphdrl.Error, match="over"):
+        _ = kept[0].moves
+    with pytest.raises(graphdrl.Error, match="no step leads to"):
+        graphdrl.evaluate(world, lambda state: 10**9)
+    with pytest.raises(graphdrl.Error, match="no node"):
+        graphdrl.evaluate(world, lambda state: "left")
+    with pytest.raises(ZeroDivisionError):
+        graphdrl.evaluate(world, lambda state: 1 // 0)
+
+
+def test_worlds_and_plans_pickle_and_copy():
+    graph = nx.DiGraph([("a", "b"), ("b", "a"), ("b", ("c", 1)), (("c", 1), "a")])
+    nx.set_node_attributes(graph, {"a": 1.5, "b": 0.1, ("c", 1): 2}, "score")
+    nx.set_node_attributes(graph, {"a": (0, 0), "b": (1, 0.3), ("c", 1): (2, 2)}, "pos")
+    grid = graphdrl.World.from_grid(np.zeros((3, 4)) > 0, diagonals=True, cell_size=0.1)
+    for world in [graphdrl.World.from_networkx(graph), grid, graphdrl.World.random("geometric", 30, weighted=True)]:
+        plan = graphdrl.plan(world, 5.5, end="start")
+        for again in [pickle.loads(pickle.dumps(plan)), copy.copy(plan), copy.deepcopy(plan)]:
+            assert again.to_json() == plan.to_json()
+            assert again.walk == plan.walk and again.bound == plan.bound and again.elapsed_s == plan.elapsed_s
+        other = pickle.loads(pickle.dumps(world))
+        assert other.nodes == world.nodes and np.array_equal(other.prizes, world.prizes)
+        assert np.array_equal(other.places, world.places)
+        assert all(np.array_equal(x, y) for x, y in zip(other.edges(), world.edges()))
+
+
+def test_plans_are_saved_in_every_format(tmp_path):
+    graph = nx.path_graph(4)
+    nx.set_node_attributes(graph, {node: (node, 0.5) for node in graph}, "pos")
+    plan = graphdrl.plan(graphdrl.World.from_networkx(graph), 3)
+    for ending in "json csv graphml dot geojson yaml svg anim.svg png html".split():
+        plan.save(tmp_path / f"plan.{ending}")
+        assert (tmp_path / f"plan.{ending}").stat().st_size > 0
+    assert len(nx.read_graphml(tmp_path / "plan.graphml")) == 4
+    with pytest.raises(graphdrl.Error):
+        plan.save(tmp_path / "plan.docx")
+
+
+def test_memory_stays_flat_and_plans_outlive_worlds():
+    def resident():
+        return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    def some(count):
+        for i in range(count):
+            world = graphdrl.World.from_edges([[0, 1], [1, 2], [2, 3]], [1.0, 2.0, 0.5])
+            plan = graphdrl.plan(world, 3, policy="nearest")
+            del world
+            assert plan.walk == [0, 1, 2]
+            if i % 100 == 0:
+                pickle.loads(pickle.dumps(plan))
+
+    some(2000)
+    before = resident()
+    some(20_000)
+    assert resident() - before < 4 << 20
+
+
+def test_eight_threads_plan_at_once():
+    worlds = list(neutral_worlds(16))
+    alone = [graphdrl.plan(world, "0.5x", policy="search:3000").walk for world in worlds]
+    together = [None] * len(worlds)
+
+    def work(first):
+        for i in range(first, len(worlds), 8):
+            together[i] = graphdrl.plan(worlds[i], "0.5x", policy="search:3000").walk
+
+    threads = [threading.Thread(target=work, args=(first,)) for first in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert together == alone
+
+
+def test_the_lock_is_released_and_progress_is_told():
+    world = graphdrl.World.random("obstacles", 40, 1)
+    news, turns = [], [0]
+    over = threading.Event()
+
+    def count():
+        while not over.is_set():
+            turns[0] += 1
+            time.sleep(0.005)
+
+    other = threading.Thread(target=count)
+    other.start()
+    graphdrl.plan(world, "0.7x", time_limit=1.0, on_progress=lambda visited, bound: news.append((visited, bound)))
+    over.set()
+    other.join()
+    assert turns[0] > 10
+    assert news and all(0 < visited <= bound for visited, bound in news)
+    with pytest.raises(ZeroDivisionError):
+        graphdrl.plan(world, "0.7x", time_limit=60.0, on_progress=lambda visited, bound: 1 // 0)
+    assert graphdrl.plan(world, "0.7x", policy="search:1000").visited > 100  # planning goes on
+
+
+def test_ctrl_c_ends_a_plan():
+    code = """
+import graphdrl, sys
+world = graphdrl.World.random("obstacles", 60, 1)
+print("ready", flush=True)
+try:
+    graphdrl.plan(world, "0.7x", time_limit=500)
+except KeyboardInterrupt:
+    print("interrupted", graphdrl.plan(world, 9, policy="nearest").visited > 5)
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        assert process.communicate(timeout=60)[0] == "interrupted True\n"
+
+
+def test_notes_are_warnings(tmp_path):
+    graph = nx.path_graph(3)
+    graph.nodes[0]["x"] = graph.nodes[0]["y"] = 1.0
+    nx.write_gml(graph, tmp_path / "some.gml")
+    with pytest.warns(UserWarning, match="coordinates"):
+        graphdrl.World.from_file(tmp_path / "some.gml")
+
+
+@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
+def test_examples_of_the_docs_run(document, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(encoding="utf-8"), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, document, "exec"), {})
+
+
+GOOD = graphdrl.World.from_edges([[0, 1], [1, 2]])
+ODD = st.one_of(
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=5),
+    st.lists(st.one_of(st.integers(), st.floats(), st.text(max_size=2)), max_size=4),
+    st.lists(st.lists(st.one_of(st.integers(-3, 5), st.floats()), max_size=3), max_size=4),
+    st.builds(lambda shape, dtype: np.ones(shape, dtype), st.sampled_from([(), (0,), (2,), (2, 2), (0, 2), (2, 2, 2)]),
+              st.sampled_from([bool, np.int8, np.int64, np.uint64, np.float32, np.float64, complex, "U2", object])),
+)  # fmt: skip
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(which=st.integers(0, 9), odd=ODD)
+def test_bad_input_is_an_exception_and_never_a_crash(which, odd):
+    world = graphdrl.World
+    calls = [
+        lambda: world.from_edges(odd),
+        lambda: world.from_edges([[0, 1], [1, 2]], odd),
+        lambda: world.from_edges([[0, 1]], node_count=odd),
+        lambda: world.from_edges([[0, 1], [1, 2]], blocked=odd, prizes=odd),
+        lambda: world.from_edges([[0, 1]], labels=odd),
+        lambda: world.from_grid(odd),
+        lambda: graphdrl.plan(GOOD, odd),
+        lambda: graphdrl.plan(GOOD, 2, start=odd, policy="nearest"),
+        lambda: graphdrl.plan(GOOD, 2, end=odd, policy="nearest"),
+        lambda: graphdrl.evaluate(GOOD, "nearest", 2, episodes=odd),
+    ]
+    try:
+        calls[which]()
+    except (graphdrl.Error, TypeError) as error:
+        assert "\n" not in str(error) or isinstance(error, TypeError)
+    assert graphdrl.plan(GOOD, 2, start=0, policy="nearest").walk == [0, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: graphdrl.plan(GOOD), "no budget"),
+        (lambda: graphdrl.plan(GOOD, -1), "bad budget"),
+        (lambda: graphdrl.plan(GOOD, 2, start=7), "no such node: 7"),
+        (lambda: graphdrl.plan(GOOD, 2, policy="nowhere"), "no such policy"),
+        (lambda: graphdrl.plan(GOOD, 2, time_limit=float("nan")), "bad time limit"),
+        (lambda: graphdrl.World.from_file("no/such/file"), "no such map"),
+        (lambda: graphdrl.World.from_edges([[0, 1]], [float("nan")]), "bad cost"),
+        (lambda: graphdrl.World.from_edges([[0, 1]], [1.0, 2.0]), "shape of costs"),
+        (lambda: graphdrl.World.from_edges([[0, 1]], prizes=[1, float("inf")]), "bad prize"),
+        (lambda: graphdrl.World.from_edges([[0, -1]]), "outside the graph"),
+        (lambda: graphdrl.World.from_edges([[0, 1]], labels=["a", "a"]), "different"),
+        (lambda: graphdrl.World.from_grid(["..", "."]), "one length"),
+        (lambda: graphdrl.World.from_grid(["##"]), "no valid node"),
+        (lambda: graphdrl.World.from_networkx(nx.Graph()), "number of nodes"),
+        (lambda: graphdrl.World.random("lake", 5), "lake"),
+        (lambda: graphdrl.set_threads(0), "threads"),
+    ],
+)
+def test_errors_say_what_to_change(call, message):
+    with pytest.raises(graphdrl.Error, match=message) as caught:
+        call()
+    assert isinstance(caught.value, ValueError) and "\n" not in str(caught.value)
