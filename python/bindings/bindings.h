@@ -26,6 +26,8 @@ namespace nb = nanobind;
 
 void bind_worlds(nb::module_& module);
 void bind_planning(nb::module_& module);
+void bind_callbacks(nb::module_& module);
+void bind_environments(nb::module_& module);
 void bind_evaluation(nb::module_& module);
 
 template <typename T, typename... Shape>

@@ -7,8 +7,6 @@
 
 namespace graphdrl::python {
 
-void bind_callbacks(nb::module_& module);
-
 NodeId checked_node(const World& world, std::int64_t node, std::string_view role) {
   const bool there = node >= 0 && node < world.node_count();
   if (there && !world.is_blocked(static_cast<NodeId>(node))) return static_cast<NodeId>(node);
@@ -37,6 +35,7 @@ NB_MODULE(_core, module) {
   bind_callbacks(module);
   bind_planning(module);
   bind_evaluation(module);
+  bind_environments(module);
 }
 
 }  // namespace graphdrl::python
