@@ -1,5 +1,3 @@
-#include <nanobind/stl/map.h>
-
 #include "bindings.h"
 #include "graphdrl/eval/comparison.h"
 

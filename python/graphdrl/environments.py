@@ -15,7 +15,6 @@ from ._core import Error
 from .world import Node, World, shown
 
 GRID_ID = "GraphDRL/Grid-v0"
-_FEATURES = 7
 _REWARDS = ("visit_penalty", "coverage_gain")
 _RENDER_MODES = ("ansi", "rgb_array")
 _CELL_PIXELS = 24

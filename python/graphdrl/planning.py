@@ -182,6 +182,8 @@ def upper_bound(
     time_limit: float | None = None,
 ) -> float:
     """What no walk's prize exceeds: nodes, where there are no prizes. Raises Error."""
+    if time_limit is not None and not 0 <= time_limit <= 1e6:
+        raise Error(f"bad time limit: expected 0 to 1000000 seconds, got {shown(time_limit)}")
     first, last = _numbers(_require_world(world), start, end)
     return _core.upper_bound(world._core, _budget_text(budget), first, last, time_limit)
 

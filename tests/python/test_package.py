@@ -335,6 +335,7 @@ def test_bad_input_is_an_exception_and_never_a_crash(which, odd):
         (lambda: graphdrl.plan(GOOD, 2, start=7), "no such node: 7"),
         (lambda: graphdrl.plan(GOOD, 2, policy="nowhere"), "no such policy"),
         (lambda: graphdrl.plan(GOOD, 2, time_limit=float("nan")), "bad time limit"),
+        (lambda: graphdrl.upper_bound(GOOD, 2, time_limit=float("nan")), "bad time limit"),
         (lambda: graphdrl.World.from_file("no/such/file"), "no such map"),
         (lambda: graphdrl.World.from_edges([[0, 1]], [float("nan")]), "bad cost"),
         (lambda: graphdrl.World.from_edges([[0, 1]], [1.0, 2.0]), "shape of costs"),

@@ -4,17 +4,12 @@
 #include <chrono>
 #include <csignal>
 #include <memory>
-#include <stdexcept>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/env/walk.h"
-#include "graphdrl/eval/rollout.h"
-#include "graphdrl/graph/search.h"
-#include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/report/map_drawing.h"
 #include "graphdrl/report/plan_files.h"
