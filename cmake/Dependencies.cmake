@@ -40,6 +40,10 @@ target_link_libraries(graphdrl_httplib INTERFACE ${HTTPLIB_LIBRARY})
 find_file(CHART_LIBRARY chart.min.js PATHS /usr/share/javascript/chart.js)
 require("${CHART_LIBRARY}" Chart.js libjs-chart.js)
 
+# The schema of ONNX's files.
+find_file(ONNX_PROTO onnx.proto PATH_SUFFIXES onnx PATHS /usr/include)
+require("${ONNX_PROTO}" "ONNX's schema" libonnx-dev)
+
 # CLP (EPL-2.0) is optional: without it bounds are those of planners/bound.h. Not by pkg-config's flags, which would link
 # the programs with a LAPACK of the linker's choice.
 if(GRAPHDRL_CLP)

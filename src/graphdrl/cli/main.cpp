@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   graphdrl::add_check_command(app);
   graphdrl::add_report_command(app);
   graphdrl::add_inspect_command(app);
+  graphdrl::add_export_command(app);
   graphdrl::add_maps_command(app);
   graphdrl::add_bench_command(app);
   return graphdrl::run_program(app, argc, argv);

@@ -20,7 +20,24 @@ std::vector<TensorSpec> explorer_specs() {
   return std::move(list).specs();
 }
 
-nlohmann::json explorer_description() {
+// A row of [count, width].
+template <typename T>
+T* row_of(T* values, int row, int width) {
+  return values + static_cast<std::ptrdiff_t>(row) * width;
+}
+
+void add_to(const float* from, int count, float* to) {
+  for (int i = 0; i < count; ++i) to[i] += from[i];
+}
+
+}  // namespace
+
+const std::vector<TensorSpec>& ExplorerParameters::specs() {
+  static const std::vector<TensorSpec> specs = explorer_specs();
+  return specs;
+}
+
+nlohmann::json ExplorerParameters::description() {
   const auto& conv = kExplorerConvShape;
   return {{"kind", "explorer"},
           {"node_features", kExplorerNodeFeatures},
@@ -43,29 +60,12 @@ nlohmann::json explorer_description() {
           {"head_inputs", {"target", "current", "mean", "node_features", "visit_features"}}};
 }
 
-// A row of [count, width].
-template <typename T>
-T* row_of(T* values, int row, int width) {
-  return values + static_cast<std::ptrdiff_t>(row) * width;
-}
-
-void add_to(const float* from, int count, float* to) {
-  for (int i = 0; i < count; ++i) to[i] += from[i];
-}
-
-}  // namespace
-
-const std::vector<TensorSpec>& ExplorerParameters::specs() {
-  static const std::vector<TensorSpec> specs = explorer_specs();
-  return specs;
-}
-
 void write_policy_file(const std::filesystem::path& path, const ExplorerParameters& parameters) {
-  write_policy_file(path, parameters, explorer_description());
+  write_policy_file(path, parameters, ExplorerParameters::description());
 }
 
 ExplorerParameters read_explorer(const Safetensors& file) {
-  require_description(file, explorer_description(), ExplorerParameters::specs());
+  require_description(file, ExplorerParameters::description(), ExplorerParameters::specs());
   return ExplorerParameters::from_file(file);
 }
 

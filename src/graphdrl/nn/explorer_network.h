@@ -32,6 +32,7 @@ class ExplorerParameters : public ParameterBuffer {
   explicit ExplorerParameters(Rng& rng) : ExplorerParameters() { draw(rng); }
 
   static const std::vector<TensorSpec>& specs();
+  static nlohmann::json description();  // as in policy files
 
   static ExplorerParameters from_file(const Safetensors& file, const std::string& prefix = "") {
     return ExplorerParameters(ParameterBuffer(specs(), file, prefix));

@@ -29,23 +29,6 @@ std::vector<TensorSpec> paper_specs() {
   return std::move(list).specs();
 }
 
-// Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
-nlohmann::json paper_description() {
-  nlohmann::json layers = nlohmann::json::array();
-  for (const auto [inputs, width, steps, elu] : kConvShapes) {
-    layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
-  }
-  layers.push_back({{"type", "linear"}, {"inputs", kFc1Shape.inputs}, {"width", kHiddenWidth}});
-  layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
-  return {{"kind", "paper"},
-          {"features", kPaperFeatureNames},
-          {"actions", kDirectionNames},
-          {"layers", layers},
-          {"activation", "elu"},
-          {"batch_norm", {{"epsilon", kBatchNormEpsilon}, {"momentum", kBatchNormMomentum}}},
-          {"pooling", "sum"}};
-}
-
 }  // namespace
 
 PaperParameters::PaperParameters(Rng& rng) : PaperParameters() {
@@ -70,13 +53,30 @@ GatedGraphConvTensors<const float> PaperParameters::conv(int layer) const {
   return conv(fmt::format("conv{}", layer));
 }
 
+// Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
+nlohmann::json PaperParameters::description() {
+  nlohmann::json layers = nlohmann::json::array();
+  for (const auto [inputs, width, steps, elu] : kConvShapes) {
+    layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
+  }
+  layers.push_back({{"type", "linear"}, {"inputs", kFc1Shape.inputs}, {"width", kHiddenWidth}});
+  layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
+  return {{"kind", "paper"},
+          {"features", kPaperFeatureNames},
+          {"actions", kDirectionNames},
+          {"layers", layers},
+          {"activation", "elu"},
+          {"batch_norm", {{"epsilon", kBatchNormEpsilon}, {"momentum", kBatchNormMomentum}}},
+          {"pooling", "sum"}};
+}
+
 void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters) {
-  write_policy_file(path, parameters, paper_description());
+  write_policy_file(path, parameters, PaperParameters::description());
 }
 
 PaperParameters read_policy_file(const std::filesystem::path& path) {
   const Safetensors file = Safetensors::read(path);
-  require_description(file, paper_description(), PaperParameters::specs());
+  require_description(file, PaperParameters::description(), PaperParameters::specs());
   return PaperParameters::from_file(file);
 }
 

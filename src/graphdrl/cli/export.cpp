@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/nn/onnx_export.h"
+#include "graphdrl/planners/explorer.h"
+
+namespace graphdrl {
+namespace {
+
+struct ExportOptions {
+  std::string policy;
+  std::string out;
+};
+
+void export_policy(const ExportOptions& options) {
+  const std::filesystem::path out = options.out;
+  if (out.extension() != ".onnx") {
+    throw Error({.what = "bad name of a model", .expected = "FILE.onnx", .got = in_quotes(options.out), .where = "-o"});
+  }
+  if (options.policy == "explorer") {
+    write_onnx(out, *builtin_explorer());
+  } else if (is_explorer_file(options.policy)) {
+    write_onnx(out, *read_explorer_file(options.policy));
+  } else {
+    write_onnx(out, read_policy_file(options.policy));
+  }
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  CLI::App* const command =
+      app.add_subcommand("export", "Write a policy's network as an ONNX model, for other runtimes");
+  const auto options = std::make_shared<ExportOptions>();
+  command->add_option("policy", options->policy, "A policy file, or explorer, the one in the program")
+      ->required()
+      ->type_name("POLICY");
+  command->add_option("-o,--out", options->out, "The model to write")
+      ->required()
+      ->check(not_empty())
+      ->type_name("FILE.onnx");
+  command->callback([options] { export_policy(*options); });
+}
+
+}  // namespace graphdrl
