@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/env/episode.h"
 #include "graphdrl/env/policy.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/planners/plan.h"
@@ -29,6 +30,8 @@ void bind_planning(nb::module_& module);
 void bind_callbacks(nb::module_& module);
 void bind_environments(nb::module_& module);
 void bind_evaluation(nb::module_& module);
+void bind_policies(nb::module_& module);
+void bind_training(nb::module_& module);
 
 template <typename T, typename... Shape>
 using InArray = nb::ndarray<const T, nb::c_contig, nb::device::cpu, Shape...>;
@@ -43,6 +46,14 @@ OutArray<T> to_numpy(std::vector<T> values) {
   return OutArray<T>(owned->data(), {owned->size()}, owner);
 }
 
+// The same as rows of so many.
+template <typename T>
+nb::ndarray<nb::numpy, T, nb::ndim<2>> to_numpy(std::vector<T> values, std::size_t columns) {
+  auto* const owned = new std::vector<T>(std::move(values));
+  const nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  return nb::ndarray<nb::numpy, T, nb::ndim<2>>(owned->data(), {owned->size() / columns, columns}, owner);
+}
+
 template <typename T, typename Array>
 std::span<const T> values_of(const Array& array) {
   return {array.data(), array.size()};
@@ -51,12 +62,45 @@ std::span<const T> values_of(const Array& array) {
 // A node by its number. Throws Error, with the node's role, where there is no such valid node.
 NodeId checked_node(const World& world, std::int64_t node, std::string_view role);
 
-// Runs work on a thread of its own, without the interpreter's lock, and passes its reports on to Python some twenty
-// times a second: on_progress(visited, bound) where it is not None. Where that raises, or the user presses Ctrl-C, all
-// planning of the process stops, and the exception is raised here.
-void run_unlocked(const nb::object& on_progress, const std::function<void(const Report&)>& work);
+// Runs work on a thread of its own, without the interpreter's lock. Calls listen() with it some twenty times a second,
+// and once when the work is done. Where that raises, or the user presses Ctrl-C, calls stop(), which must make the work
+// end, and raises the exception here then.
+void run_unlocked(const std::function<void()>& work, const std::function<void()>& listen,
+                  const std::function<void()>& stop);
 
-// A callable as a policy: choose(state) gives the number of the node to go to, or None to stop.
+// The same for planning, whose reports go to on_progress(visited, bound) where it is not None. A stop is one of all
+// planning of the process.
+void run_planning(const nb::object& on_progress, const std::function<void(const Report&)>& work);
+
+// What a policy is shown: an episode under way, for one call of the policy; or the state after a walk, which lasts.
+class State {
+ public:
+  explicit State(const Observation& observation) : observation_(&observation) {}
+  // Throws Error where the walk cannot be walked.
+  State(const World& world, std::span<const NodeId> walk, double budget, End end);
+
+  void close() { observation_ = nullptr; }
+  const Observation& get() const;  // throws Error once closed
+
+ private:
+  struct Own {
+    Episode episode;
+    Observation observation;
+  };
+
+  std::unique_ptr<const Own> own_;
+  const Observation* observation_;
+};
+
+// A policy that is no name: an explorer, a network of the paper, or a callable that is given a State and gives the
+// number of the node to go to, or None to stop. One of the two is set. REQUIRES: the object outlives it.
+struct OwnPolicy {
+  std::function<std::unique_ptr<Planner>()> planner;
+  std::function<std::unique_ptr<Policy>()> policy;
+
+  std::unique_ptr<Policy> as_policy() const;  // whichever it is
+};
+OwnPolicy own_policy_of(nb::handle policy);
 std::unique_ptr<Policy> make_callable_policy(nb::object choose);
 
 }  // namespace graphdrl::python

@@ -7,41 +7,21 @@
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
+#include "graphdrl/env/budget.h"
+#include "graphdrl/env/walk.h"
 
 namespace graphdrl::python {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenLooks(50);
 
-// What a policy in Python is shown. Holds for one call: then the episode goes on.
-class State {
- public:
-  explicit State(const Observation& observation) : observation_(&observation) {}
-
-  void close() { observation_ = nullptr; }
-  NodeId position() const { return get().position; }
-  double spent() const { return get().spent; }
-  double budget() const { return get().budget; }
-  int visited_count() const { return get().visited_count; }
-
-  std::vector<NodeId> moves() const {
-    std::vector<NodeId> nodes;
-    for (int action = 0; action < get().action_count(); ++action) {
-      if (get().legal(action)) nodes.push_back(get().target(action));
-    }
-    return nodes;
+std::vector<NodeId> moves_of(const Observation& observation) {
+  std::vector<NodeId> nodes;
+  for (int action = 0; action < observation.action_count(); ++action) {
+    if (observation.legal(action)) nodes.push_back(observation.target(action));
   }
-  OutArray<std::uint32_t> visits() const { return to_numpy(std::vector(get().visits.begin(), get().visits.end())); }
-  OutArray<NodeId> walk() const { return to_numpy(std::vector(get().walk.begin(), get().walk.end())); }
-
- private:
-  const Observation& get() const {
-    if (observation_ == nullptr) throw Error({.what = "this state is over", .expected = "one use, within the policy"});
-    return *observation_;
-  }
-
-  const Observation* observation_;
-};
+  return nodes;
+}
 
 class CallablePolicy final : public Policy {
  public:
@@ -85,26 +65,42 @@ std::unique_ptr<Policy> make_callable_policy(nb::object choose) {
   return std::make_unique<CallablePolicy>(std::move(choose));
 }
 
-void run_unlocked(const nb::object& on_progress, const std::function<void(const Report&)>& work) {
+State::State(const World& world, std::span<const NodeId> walk, double budget, End end) {
+  auto own = std::make_unique<Own>(
+      Own{.episode = Episode(world, {.budget = budget, .end = end, .action_space = action_space_of(world)}),
+          .observation = {}});
+  follow_walk(own->episode, walk);
+  own->observation = own->episode.observation();
+  own_ = std::move(own);
+  observation_ = &own_->observation;
+}
+
+const Observation& State::get() const {
+  if (observation_ == nullptr) throw Error({.what = "this state is over", .expected = "one use, within the policy"});
+  return *observation_;
+}
+
+void run_unlocked(const std::function<void()>& work, const std::function<void()>& listen,
+                  const std::function<void()>& stop) {
   std::mutex mutex;
   std::condition_variable ended;
   bool done = false;
   std::exception_ptr failure;
-  std::optional<PlanProgress> news;
-  const bool listens = !on_progress.is_none();
-  Report report;
-  if (listens) {
-    report = [&](const PlanProgress& progress) {
-      const std::lock_guard lock(mutex);
-      news = progress;
-    };
-  }
   std::optional<nb::python_error> raised;
+  const auto heed = [&] {
+    try {
+      if (PyErr_CheckSignals() != 0) nb::raise_python_error();
+      listen();
+    } catch (nb::python_error& error) {
+      raised.emplace(std::move(error));
+      stop();
+    }
+  };
   {
     const nb::gil_scoped_release unlocked;
     std::thread worker([&] {
       try {
-        work(report);
+        work();
       } catch (...) {
         failure = std::current_exception();
       }
@@ -115,41 +111,83 @@ void run_unlocked(const nb::object& on_progress, const std::function<void(const 
     std::unique_lock lock(mutex);
     while (!ended.wait_for(lock, kBetweenLooks, [&] { return done; })) {
       if (raised) continue;
-      const std::optional<PlanProgress> told = std::exchange(news, std::nullopt);
       lock.unlock();
       {
         const nb::gil_scoped_acquire locked;
-        try {
-          if (PyErr_CheckSignals() != 0) nb::raise_python_error();
-          if (told) on_progress(told->visited, told->bound);
-        } catch (nb::python_error& error) {
-          raised.emplace(std::move(error));
-          stop_planning();
-        }
+        heed();
       }
       lock.lock();
     }
     lock.unlock();
     worker.join();
   }
-  if (raised) {
-    stop_planning(false);
-    throw std::move(*raised);
-  }
+  if (!raised && !failure) heed();
+  if (raised) throw std::move(*raised);
   if (failure) std::rethrow_exception(failure);
 }
 
+void run_planning(const nb::object& on_progress, const std::function<void(const Report&)>& work) {
+  std::mutex mutex;
+  std::optional<PlanProgress> news;
+  bool stopped = false;
+  Report report;
+  if (!on_progress.is_none()) {
+    report = [&](const PlanProgress& progress) {
+      const std::lock_guard lock(mutex);
+      news = progress;
+    };
+  }
+  const auto listen = [&] {
+    std::unique_lock lock(mutex);
+    const std::optional<PlanProgress> told = std::exchange(news, std::nullopt);
+    lock.unlock();
+    if (told) on_progress(told->visited, told->bound);
+  };
+  struct Reset {
+    const bool& stopped;
+    ~Reset() {
+      if (stopped) stop_planning(false);
+    }
+  } reset{stopped};
+  run_unlocked([&] { work(report); }, listen,
+               [&] {
+                 stopped = true;
+                 stop_planning();
+               });
+}
+
 void bind_callbacks(nb::module_& module) {
-  nb::class_<State>(module, "State", "What a policy sees: node numbers and costs. It holds for one call of the policy.")
-      .def_prop_ro("position", &State::position, "The node it stands on.")
-      .def_prop_ro("moves", &State::moves, "The nodes that one step leads to, and that can be paid for.")
-      .def_prop_ro("visits", &State::visits, nb::rv_policy::automatic,
-                   "How often each node was visited. Shape [N], uint32.")
-      .def_prop_ro("walk", &State::walk, nb::rv_policy::automatic,
-                   "Every position so far, the start first. Shape [steps + 1], int32.")
-      .def_prop_ro("visited_count", &State::visited_count, "How many nodes are visited.")
-      .def_prop_ro("budget", &State::budget, "Of the whole walk, in units of cost.")
-      .def_prop_ro("spent", &State::spent, "Of the budget.");
+  nb::class_<State>(module, "State",
+                    "What a policy sees: node numbers and costs. One that a policy is given holds for that call; one of "
+                    "World.state() lasts.")
+      .def(
+          "__init__",
+          [](State* self, const World& world, const InArray<std::int64_t, nb::ndim<1>>& walk,
+             const std::string& budget, std::optional<std::int64_t> end) {
+            std::vector<NodeId> nodes;
+            for (const std::int64_t node : values_of<std::int64_t>(walk)) {
+              nodes.push_back(checked_node(world, node, "a step"));
+            }
+            new (self) State(world, nodes, Budget::parse(budget).cost_in(world),
+                             end ? End::at(checked_node(world, *end, "end")) : End::anywhere());
+          },
+          nb::arg("world"), nb::arg("walk"), nb::arg("budget"), nb::arg("end").none())
+      .def_prop_ro("position", [](const State& state) { return state.get().position; }, "The node it stands on.")
+      .def_prop_ro("moves", [](const State& state) { return moves_of(state.get()); },
+                   "The nodes that one step leads to, and that can be paid for.")
+      .def_prop_ro(
+          "visits",
+          [](const State& state) { return to_numpy(std::vector(state.get().visits.begin(), state.get().visits.end())); },
+          nb::rv_policy::automatic, "How often each node was visited. Shape [N], uint32.")
+      .def_prop_ro(
+          "walk",
+          [](const State& state) { return to_numpy(std::vector(state.get().walk.begin(), state.get().walk.end())); },
+          nb::rv_policy::automatic, "Every position so far, the start first. Shape [steps + 1], int32.")
+      .def_prop_ro("visited_count", [](const State& state) { return state.get().visited_count; },
+                   "How many nodes are visited.")
+      .def_prop_ro("budget", [](const State& state) { return state.get().budget; },
+                   "Of the whole walk, in units of cost.")
+      .def_prop_ro("spent", [](const State& state) { return state.get().spent; }, "Of the budget.");
 }
 
 }  // namespace graphdrl::python

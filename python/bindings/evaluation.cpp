@@ -33,17 +33,11 @@ nb::list evaluate(const std::vector<World>& worlds, const std::vector<std::strin
   ComparisonOptions options{
       .policies = policies, .end = end, .episodes = episodes, .all_starts = all_starts, .seed = seed};
   if (budget) options.budget = Budget::parse(*budget);
-  std::vector<nb::object> callables;  // released here, with the lock
-  for (const auto& [name, choose] : own) {
-    const nb::handle callable = choose;
-    callables.push_back(nb::borrow(callable));
-    options.own_policies[nb::cast<std::string>(name)] = [callable] {
-      const nb::gil_scoped_acquire lock;
-      return make_callable_policy(nb::borrow(callable));
-    };
+  for (const auto& [name, policy] : own) {
+    options.own_policies[nb::cast<std::string>(name)] = [chosen = own_policy_of(policy)] { return chosen.as_policy(); };
   }
   Comparison comparison;
-  run_unlocked(nb::none(), [&](const Report&) { comparison = compare(worlds, options); });
+  run_planning(nb::none(), [&](const Report&) { comparison = compare(worlds, options); });
   nb::list rows;
   for (const ComparisonRow& row : comparison.rows) rows.append(row_of(row));
   return rows;

@@ -33,9 +33,11 @@ NB_MODULE(_core, module) {
   module.def("threads", &threads, "How many threads one call may use.");
   bind_worlds(module);
   bind_callbacks(module);
+  bind_policies(module);
   bind_planning(module);
   bind_evaluation(module);
   bind_environments(module);
+  bind_training(module);
 }
 
 }  // namespace graphdrl::python

@@ -21,14 +21,18 @@ Task task_of(const World& world, const std::string& budget, std::optional<std::i
 }
 
 PlanReport plan(const World& world, const std::string& budget, std::optional<std::int64_t> start,
-                std::optional<std::int64_t> end, const std::string& policy, std::optional<double> time_limit,
-                std::uint64_t seed, const nb::object& on_progress) {
+                std::optional<std::int64_t> end, const std::string& policy, const nb::object& own,
+                std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress) {
   const Task task = task_of(world, budget, start, end);
   check(task);
+  PlanRequest request{.policy = policy, .seed = seed, .time_limit_s = time_limit};
+  if (!own.is_none()) {
+    const OwnPolicy chosen = own_policy_of(own);
+    request.own_planner = chosen.planner;
+    request.own_policy = chosen.policy;
+  }
   std::optional<PlanReport> answer;
-  run_unlocked(on_progress, [&](const Report& report) {
-    answer = make_plan(world, task, {.policy = policy, .seed = seed, .time_limit_s = time_limit}, report);
-  });
+  run_planning(on_progress, [&](const Report& report) { answer = make_plan(world, task, request, report); });
   return std::move(*answer);
 }
 
@@ -36,7 +40,7 @@ double upper_bound(const World& world, const std::string& budget, std::optional<
                    std::optional<std::int64_t> end, std::optional<double> time_limit) {
   const Task task = task_of(world, budget, start, end);
   double bound = 0;
-  run_unlocked(nb::none(), [&](const Report&) {
+  run_planning(nb::none(), [&](const Report&) {
     bound = max_prize(task, deadline_after(time_limit ? TimeLimit(*time_limit) : std::nullopt));
   });
   return bound;
@@ -98,7 +102,7 @@ void bind_planning(nb::module_& module) {
         write_plan(report, file);
       });
   module.def("plan", &plan, nb::arg("world"), nb::arg("budget"), nb::arg("start").none(), nb::arg("end").none(),
-             nb::arg("policy"), nb::arg("time_limit").none(), nb::arg("seed"), nb::arg("on_progress").none());
+             nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"), nb::arg("on_progress").none());
   module.def("upper_bound", &upper_bound, nb::arg("world"), nb::arg("budget"), nb::arg("start").none(),
              nb::arg("end").none(), nb::arg("time_limit").none());
 }

@@ -2,18 +2,27 @@
 
 from ._core import FAMILIES, Error, State, __version__, set_threads, threads
 from .planning import Plan, evaluate, plan, upper_bound
+from .policies import Explorer, FirstVisits, PaperNetwork, Policy
+from .training import Run, resume, train
 from .world import World
 
 __all__ = [
     "FAMILIES",
     "Error",
+    "Explorer",
+    "FirstVisits",
+    "PaperNetwork",
     "Plan",
+    "Policy",
+    "Run",
     "State",
     "World",
     "__version__",
     "evaluate",
     "plan",
+    "resume",
     "set_threads",
     "threads",
+    "train",
     "upper_bound",
 ]

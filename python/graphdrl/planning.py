@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Error
-from .world import Node, OnProgress, World, shown
+from .policies import Policy
+from .world import Budget, Node, OnProgress, World, budget_text, shown
 
-Budget = float | int | str
 OwnPolicy = Callable[[_core.State], int | None]
 
 
@@ -115,15 +115,6 @@ def _restore(world: World, walk: NDArray[np.int32], claims: tuple[Any, ...]) -> 
     return Plan(world, _core.PlanReport.restore(world._core, walk, claims))
 
 
-def _budget_text(budget: Budget) -> str:
-    if isinstance(budget, str):
-        return budget
-    try:
-        return repr(float(budget))
-    except (TypeError, ValueError) as error:
-        raise Error(f"bad budget: expected a number from 0 up, or text like '1.1x', got {shown(budget)}") from error
-
-
 def _numbers(world: World, start: Node | None, end: Node | None) -> tuple[int | None, int | None]:
     """The start and the end as numbers; "start" as an end is the start, where no node is called so."""
     _, given_start, given_end = world._core.given
@@ -144,12 +135,23 @@ def _require_world(world: World) -> World:
     return world
 
 
+def policy_of(policy: str | Policy | OwnPolicy) -> tuple[str, Any]:
+    """What a policy is called, and what it is unless it is known by that name."""
+    if isinstance(policy, str):
+        return policy, None
+    if isinstance(policy, Policy):
+        return policy.name, policy._core
+    if callable(policy):
+        return getattr(policy, "__name__", type(policy).__name__), policy
+    raise Error(f"bad policy: expected a name, a Policy or a callable, got {shown(policy)}")
+
+
 def plan(
     world: World,
     budget: Budget | None = None,
     start: Node | None = None,
     end: Node | None = None,
-    policy: str = "search",
+    policy: str | Policy | OwnPolicy = "search",
     *,
     time_limit: float | None = None,
     seed: int = 1,
@@ -159,8 +161,8 @@ def plan(
 
     budget: in units of cost, or a text as "1.1x", a multiple of the nodes; where it is None, that of the world's file.
     start: a node; by default the file's, else the first one that is not blocked. end: a node, "start" or "anywhere";
-    by default the file's, else anywhere. policy: as `graphdrl plan --policy`. time_limit: seconds for all of it.
-    on_progress(visited, bound): called now and then.
+    by default the file's, else anywhere. policy: a name as of `graphdrl plan --policy`, a `Policy`, or a callable as
+    `evaluate` takes. time_limit: seconds for all of it. seed: of the search. on_progress(visited, bound): called now and then.
 
     Other threads go on meanwhile. Ctrl-C ends it, and every other plan of the process too. Raises Error.
     """
@@ -170,7 +172,10 @@ def plan(
     if budget is None:
         raise Error(f"{world.name}: no budget is given")
     first, last = _numbers(world, start, end)
-    return Plan(world, _core.plan(core, _budget_text(budget), first, last, policy, time_limit, seed, on_progress))
+    name, own = policy_of(policy)
+    return Plan(
+        world, _core.plan(core, budget_text(budget), first, last, name, own, time_limit, seed, on_progress)
+    )
 
 
 def upper_bound(
@@ -185,12 +190,12 @@ def upper_bound(
     if time_limit is not None and not 0 <= time_limit <= 1e6:
         raise Error(f"bad time limit: expected 0 to 1000000 seconds, got {shown(time_limit)}")
     first, last = _numbers(_require_world(world), start, end)
-    return _core.upper_bound(world._core, _budget_text(budget), first, last, time_limit)
+    return _core.upper_bound(world._core, budget_text(budget), first, last, time_limit)
 
 
 def evaluate(
     worlds: World | Iterable[World],
-    policies: str | OwnPolicy | Iterable[str | OwnPolicy] = ("nearest", "explorer", "search"),
+    policies: str | Policy | OwnPolicy | Iterable[str | Policy | OwnPolicy] = ("nearest", "explorer", "search"),
     budget: Budget | None = None,
     *,
     end: str = "",
@@ -200,25 +205,23 @@ def evaluate(
 ) -> list[dict[str, Any]]:
     """Compares policies on worlds; rows for `pandas.DataFrame`, coverages in percent, as `graphdrl evaluate --json`.
 
-    A policy is a name, as on the command line, or a callable of your own: it gets a `State` and gives the number of the
+    A policy is a name, as on the command line, a `Policy`, or a callable of your own: it gets a `State` and gives the number of the
     node to go to, one of `state.moves`, or None to stop. Every policy has the same starts: each node once with
     `all_starts`, else the file's or random ones. Raises Error, and what your policy raises.
     """
     worlds = [worlds] if isinstance(worlds, World) else list(worlds)
-    chosen = [policies] if isinstance(policies, str) or callable(policies) else list(policies)
+    chosen = [policies] if isinstance(policies, (str, Policy)) or callable(policies) else list(policies)
     if not isinstance(episodes, int) or not 1 <= episodes <= 1_000_000:
         raise Error(f"bad number of episodes: expected 1 to 1000000, got {shown(episodes)}")
     names: list[str] = []
-    own: dict[str, OwnPolicy] = {}
+    own: dict[str, Any] = {}
     for policy in chosen:
-        if callable(policy):
-            name = getattr(policy, "__name__", type(policy).__name__)
+        name, its_own = policy_of(policy)
+        if its_own is not None:
             while name in names:
                 name += "'"
-            own[name] = policy
-            names.append(name)
-        else:
-            names.append(policy)
-    text = None if budget is None else _budget_text(budget)
+            own[name] = its_own
+        names.append(name)
+    text = None if budget is None else budget_text(budget)
     cores = [_require_world(world)._core for world in worlds]
     return _core.evaluate(cores, names, own, text, end, episodes, all_starts, seed)

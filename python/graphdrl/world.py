@@ -20,11 +20,22 @@ _PLACE_NAMES = (("x", "y"), ("lon", "lat"))
 _NO_NODE = -1
 
 Node = Hashable
+Budget = float | int | str
 
 
 def shown(value: Any) -> str:
     """A value on one line of an error."""
     return " ".join(repr(value).split())[:100]
+
+
+def budget_text(budget: Budget) -> str:
+    """As the command line takes it."""
+    if isinstance(budget, str):
+        return budget
+    try:
+        return repr(float(budget))
+    except (TypeError, ValueError) as error:
+        raise Error(f"bad budget: expected a number from 0 up, or text like '1.1x', got {shown(budget)}") from error
 
 
 def _array(values: ArrayLike, dtype: type, name: str, kinds: str) -> NDArray[Any]:
@@ -343,6 +354,15 @@ class World:
                 if 0 <= row < self.shape[0] and 0 <= column < self.shape[1]:
                     return int(row) * self.shape[1] + int(column)
         raise Error(f"{self.name}: no such node: {shown(node)}")
+
+    def state(self, walk: Iterable[Node], budget: Budget, end: Node | None = None) -> _core.State:
+        """What a policy sees after a walk: a State that lasts.
+
+        walk: nodes, the start first; on a grid a repeated cell is a blocked move. end: where the walk must end; None
+        for anywhere. Raises Error where the walk cannot be walked.
+        """
+        nodes = np.array([self.number(node) for node in walk], np.int64)
+        return _core.State(self._core, nodes, budget_text(budget), None if end is None else self.number(end))
 
     def to_networkx(self) -> Any:
         """A Graph or DiGraph of networkx: cost, prize, blocked and pos are attributes."""

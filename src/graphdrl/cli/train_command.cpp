@@ -12,6 +12,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/io/json.h"
+#include "graphdrl/report/progress.h"
 #include "graphdrl/train/options.h"
 #include "graphdrl/train/trainer.h"
 
@@ -133,7 +134,13 @@ void train(Trainer& trainer, bool json) {
   const Recipe::Units& units = trainer.units();
   catch_signals();
   ProgressDisplay display(stderr, units.name, progress.done);
-  if (!trainer.run([] { return stop_signal != 0; }, display)) {
+  const bool finished = trainer.run([] { return stop_signal != 0; },
+                                    [&](const TrainingNews& news) {
+                                      const bool last = progress.done == units.count;
+                                      display.show(progress.done, units.count, news.status, last);
+                                    });
+  display.finish();
+  if (!finished) {
     print_diagnostic(
         fmt::format("Stopped after {} of {} {}s; everything is saved. To go on:\n  graphdrl train --resume {}\n",
                     progress.done, units.count, units.name, run));

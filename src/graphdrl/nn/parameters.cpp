@@ -43,16 +43,20 @@ ParameterBuffer::ParameterBuffer(const std::vector<TensorSpec>& specs, const Saf
                                  const std::string& prefix)
     : ParameterBuffer(specs) {
   for (const TensorSpec& spec : specs) {
-    const std::vector<float> values = file.get<float>(prefix + spec.name, spec.shape);
-    const bool variance = spec.name.ends_with("running_var");
-    for (const float value : values) {
-      if (std::isfinite(value) && !(variance && value < 0)) continue;
-      throw Error({.what = "tensor " + in_quotes(prefix + spec.name) + " holds a value that no network can have",
-                   .got = fmt::format("{}", value),
-                   .where = file.source()});
-    }
-    std::copy(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(spec.offset));
+    set(spec, file.get<float>(prefix + spec.name, spec.shape), file.source(), prefix);
   }
+}
+
+void ParameterBuffer::set(const TensorSpec& spec, std::span<const float> values, const std::string& source,
+                          const std::string& prefix) {
+  const bool variance = spec.name.ends_with("running_var");
+  for (const float value : values) {
+    if (std::isfinite(value) && !(variance && value < 0)) continue;
+    throw Error({.what = "tensor " + in_quotes(prefix + spec.name) + " holds a value that no network can have",
+                 .got = fmt::format("{}", value),
+                 .where = source});
+  }
+  std::copy(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(spec.offset));
 }
 
 void ParameterBuffer::draw(Rng& rng) {

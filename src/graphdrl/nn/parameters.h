@@ -48,6 +48,11 @@ class ParameterBuffer {
   // no network can have.
   ParameterBuffer(const std::vector<TensorSpec>& specs, const Safetensors& file, const std::string& prefix);
 
+  // Sets one tensor. Throws Error, naming the source, where a value is one that no network can have.
+  // REQUIRES: as many values as it has.
+  void set(const TensorSpec& spec, std::span<const float> values, const std::string& source,
+           const std::string& prefix = "");
+
   void draw(Rng& rng);  // each tensor within its bound; 0 draws no number
 
   std::span<float> values() { return values_; }

@@ -33,6 +33,16 @@ void check_time_limit(const PlanRequest& request) {
   }
 }
 
+// Null where the policy chooses step by step.
+std::unique_ptr<Planner> planner_of(const PlanRequest& request) {
+  if (request.own_planner) return request.own_planner();
+  return request.own_policy ? nullptr : make_planner(request.policy, request.seed);
+}
+
+std::unique_ptr<Policy> policy_of(const PlanRequest& request) {
+  return request.own_policy ? request.own_policy() : make_policy(request.policy, request.seed);
+}
+
 int count_unreachable(const World& world, NodeId start) {
   int reached = 1;
   NearestFirst().run(world.open(), start, kNoLimit, [&](NodeId, double) {
@@ -61,14 +71,16 @@ PlanReport make_plan(const World& world, const Task& task, const PlanRequest& re
     return begin + std::chrono::duration_cast<std::chrono::nanoseconds>(
                        std::chrono::duration<double>(share * *request.time_limit_s));
   };
-  PlanReport answer{.world = world, .task = task, .policy = policy_label(request.policy), .plan = {}};
-  const auto planner = make_planner(request.policy, request.seed);
+  const bool own = request.own_planner || request.own_policy;
+  PlanReport answer{
+      .world = world, .task = task, .policy = own ? request.policy : policy_label(request.policy), .plan = {}};
+  const auto planner = planner_of(request);
   const bool bounds = planner != nullptr && planner->bounds();
   const double bound = bounds ? kNoLimit : max_prize(task, deadline(kBoundShare));
   if (planner != nullptr) {
     answer.plan = planner->plan(task, deadline(kPlanShare), report);
   } else {
-    answer.plan = plan_by_steps(world, task, *make_policy(request.policy, request.seed), deadline(kPlanShare), report);
+    answer.plan = plan_by_steps(world, task, *policy_of(request), deadline(kPlanShare), report);
   }
   Plan& plan = answer.plan;
   check_plan(world, task, plan);

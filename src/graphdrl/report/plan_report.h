@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
+#include "graphdrl/env/policy.h"
 #include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
@@ -24,6 +26,9 @@ struct PlanRequest {
   std::string policy = "search";  // as make_policy() takes it
   std::uint64_t seed = 1;         // of `search` and of random policies
   std::optional<double> time_limit_s = {};
+  // One of these instead of a policy that has a name here; `policy` is then what it is called.
+  std::function<std::unique_ptr<Planner>()> own_planner = {};
+  std::function<std::unique_ptr<Policy>()> own_policy = {};
 };
 
 // Plans one walk and bounds it, both within the time limit. Throws Error on a policy that there is not, and on a task

@@ -191,31 +191,47 @@ void write_config(const std::filesystem::path& path, const TrainOptions& options
   write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
-TrainOptions read_config(const std::filesystem::path& path) {
-  const std::string source = path.string();
-  const std::string text = read_file(path);
-  require_shallow_json(text, source);
-  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) throw Error({.what = "not a run's configuration", .where = source});
+TrainOptions parse_options(const Json& given, const std::string& source) {
+  if (!given.is_object()) throw Error({.what = "not a run's configuration", .where = source});
   std::size_t known = 0;
   const auto read = [&](const char* key, auto& value) {
-    if (!json.contains(key)) throw Error({.what = "missing key " + in_quotes(key), .where = source});
-    const Json& found = json[key];
+    if (!given.contains(key)) return;
+    const Json& found = given[key];
     if (!has_type_of(found, value)) {
       throw Error({.what = "value of the wrong type", .got = in_quotes(found.dump()), .where = source + ": " + key});
     }
     found.get_to(value);
     ++known;
   };
-  std::string preset;
+  std::string preset = kExplorerPreset;
   read("preset", preset);
   TrainOptions options = default_options(preset);
   known = 0;
   for_each_option([&](const auto& option) {
     if (option.defaults.of(preset)) read(option.key, options.*option.member);
   });
-  if (known != json.size()) throw Error({.what = "a key that no option has", .where = source});
+  if (known != given.size()) {
+    for (const auto& [key, value] : given.items()) {
+      bool taken = false;
+      for_each_option([&](const auto& option) { taken = taken || (option.key == key && option.defaults.of(preset)); });
+      if (taken) continue;
+      throw Error({.what = "no option of the preset " + preset, .got = in_quotes(key, 200), .where = source});
+    }
+  }
   validate(options);
+  return options;
+}
+
+TrainOptions read_config(const std::filesystem::path& path) {
+  const std::string source = path.string();
+  const std::string text = read_file(path);
+  require_shallow_json(text, source);
+  const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  TrainOptions options = parse_options(json, source);
+  for_each_option([&](const auto& option) {
+    if (!option.defaults.of(options.preset) || json.contains(option.key)) return;
+    throw Error({.what = "missing key " + in_quotes(option.key), .where = source});
+  });
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <variant>
@@ -89,6 +90,10 @@ TrainOptions default_options(const std::string& preset);
 
 // Throws Error, naming the option, on a value out of range.
 void validate(const TrainOptions& options);
+
+// Options by their keys; those left out are the preset's. Throws Error, naming the source, on an unknown key, on one
+// that the preset does not take, on a value of the wrong type and on one out of range.
+TrainOptions parse_options(const nlohmann::ordered_json& given, const std::string& source);
 
 // config.json: every option that the preset takes, resolved.
 void write_config(const std::filesystem::path& path, const TrainOptions& options);

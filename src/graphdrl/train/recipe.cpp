@@ -7,9 +7,13 @@
 namespace graphdrl {
 
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
-                                    const MakePaperLearner& make_learner) {
+                                    const MakePaperLearner& make_learner, std::vector<World> worlds) {
   if (options.preset == kExplorerPreset) return std::make_unique<ExplorerRecipe>(options, rng);
-  std::vector<World> worlds = from != nullptr ? worlds_of(*from) : load_worlds(options.maps);
+  if (from != nullptr) {
+    worlds = worlds_of(*from);
+  } else if (worlds.empty()) {
+    worlds = load_worlds(options.maps);
+  }
   return std::make_unique<PaperRecipe>(options, rng, std::move(worlds), make_learner);
 }
 

@@ -49,8 +49,9 @@ class Recipe {
 };
 
 // The recipe of options.preset, at its beginning; `rng` must outlive it. `from`: the checkpoint to be restored, if any,
-// which holds the maps. Throws Error on maps that do not fit the options.
+// which holds the maps. worlds: instead of options.maps, where there are any. Throws Error on maps that do not fit the
+// options.
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
-                                    const MakePaperLearner& make_learner);
+                                    const MakePaperLearner& make_learner, std::vector<World> worlds = {});
 
 }  // namespace graphdrl

@@ -9,11 +9,11 @@
 namespace graphdrl {
 
 Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from,
-                 const MakePaperLearner& make_learner)
+                 const MakePaperLearner& make_learner, std::vector<World> worlds)
     : options_(options),
       run_(std::move(run)),
       rng_(options.seed),
-      recipe_(make_recipe(options, rng_, from, make_learner)),
+      recipe_(make_recipe(options, rng_, from, make_learner, std::move(worlds))),
       units_(recipe_->units()) {
   if (from == nullptr) return;
   progress_ = from->progress();
@@ -25,9 +25,9 @@ Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint
 }
 
 std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDirectory& run,
-                                        const MakePaperLearner& make_learner) {
+                                        const MakePaperLearner& make_learner, std::vector<World> worlds) {
   validate(options);
-  std::unique_ptr<Trainer> trainer(new Trainer(options, run, nullptr, make_learner));
+  std::unique_ptr<Trainer> trainer(new Trainer(options, run, nullptr, make_learner, std::move(worlds)));
   run.create();
   write_config(run.config(), options);
   trainer->save();
@@ -37,10 +37,10 @@ std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDi
 std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const MakePaperLearner& make_learner) {
   const TrainOptions options = read_config(run.config());
   const Checkpoint checkpoint = Checkpoint::read(run.checkpoint(), options.preset);
-  return std::unique_ptr<Trainer>(new Trainer(options, run, &checkpoint, make_learner));
+  return std::unique_ptr<Trainer>(new Trainer(options, run, &checkpoint, make_learner, {}));
 }
 
-bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
+bool Trainer::run(const std::function<bool()>& stop, const std::function<void(const TrainingNews&)>& tell) {
   const TrainingProgress before = progress_;
   const auto start = std::chrono::steady_clock::now();
   const auto session_s = [&] {
@@ -54,20 +54,19 @@ bool Trainer::run(const std::function<bool()>& stop, ProgressDisplay& display) {
     stopped = stop();
     progress_.elapsed_s = before.elapsed_s + session_s();
     const double rate = static_cast<double>(progress_.samples - before.samples) / std::max(session_s(), 1e-9);
-    display.show(progress_.done, units_.count,
-                 fmt::format("{}  {:.0f} {}/s", recipe_->status(progress_), rate, units_.samples), finished());
-    log(metrics, events);
+    std::string status = fmt::format("{}  {:.0f} {}/s", recipe_->status(progress_), rate, units_.samples);
+    const std::vector<Metric> taken = log(metrics, events);
+    tell({.progress = progress_, .status = std::move(status), .metrics = taken});
     if (!finished() && !stopped && progress_.done % options_.checkpoint_every == 0) save();
   }
-  display.finish();
   progress_.elapsed_s = before.elapsed_s + session_s();
   save();
   return finished();
 }
 
-void Trainer::log(MetricsFile& metrics, EventWriter& events) {
-  const std::vector<Metric> taken = recipe_->take_metrics(progress_);
-  if (taken.empty()) return;
+std::vector<Metric> Trainer::log(MetricsFile& metrics, EventWriter& events) {
+  std::vector<Metric> taken = recipe_->take_metrics(progress_);
+  if (taken.empty()) return taken;
   std::vector<Scalar> all;
   std::vector<Scalar> curves;
   for (const Metric& metric : taken) {
@@ -76,6 +75,7 @@ void Trainer::log(MetricsFile& metrics, EventWriter& events) {
   }
   metrics.write(progress_.done, all);
   events.write(progress_.done, curves);
+  return taken;
 }
 
 void Trainer::save() {

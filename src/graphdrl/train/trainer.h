@@ -7,21 +7,28 @@
 #include "graphdrl/base/random.h"
 #include "graphdrl/report/event_writer.h"
 #include "graphdrl/report/metrics_file.h"
-#include "graphdrl/report/progress.h"
 #include "graphdrl/train/options.h"
 #include "graphdrl/train/recipe.h"
 #include "graphdrl/train/run_directory.h"
 
 namespace graphdrl {
 
+// Said after every unit.
+struct TrainingNews {
+  const TrainingProgress& progress;
+  std::string status;                  // how it goes, for a display
+  const std::vector<Metric>& metrics;  // of the run's metrics, where some are due; else empty
+};
+
 // One training in one run directory. Its whole state goes into each checkpoint, in the middle of an episode too, so
 // that a resumed run ends with the bytes of one that was never interrupted.
 class Trainer {
  public:
   // Begins a new run: writes the configuration and checkpoint 0. Throws Error on bad options and where the directory
-  // cannot be written. `make_learner`: for the paper's device.
+  // cannot be written. `make_learner`: for the paper's device. worlds: instead of options.maps, where there are any.
   static std::unique_ptr<Trainer> start(const TrainOptions& options, const RunDirectory& run,
-                                        const MakePaperLearner& make_learner = make_paper_cpu_learner);
+                                        const MakePaperLearner& make_learner = make_paper_cpu_learner,
+                                        std::vector<World> worlds = {});
 
   // Goes on with the run in a directory. Throws Error where its files are not whole.
   static std::unique_ptr<Trainer> resume(const RunDirectory& run,
@@ -31,7 +38,7 @@ class Trainer {
 
   // Trains until the last unit is done or `stop`, asked after every unit and maybe within it, says so; then saves.
   // Gives whether the training is finished.
-  bool run(const std::function<bool()>& stop, ProgressDisplay& display);
+  bool run(const std::function<bool()>& stop, const std::function<void(const TrainingNews&)>& tell);
 
   const RunDirectory& run_directory() const { return run_; }
   const TrainingProgress& progress() const { return progress_; }
@@ -39,10 +46,12 @@ class Trainer {
 
  private:
   // Touches no file.
-  Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const MakePaperLearner& make_learner);
+  Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const MakePaperLearner& make_learner,
+          std::vector<World> worlds);
 
   bool finished() const { return progress_.done == units_.count; }
-  void log(MetricsFile& metrics, EventWriter& events);
+  // Gives what was written.
+  std::vector<Metric> log(MetricsFile& metrics, EventWriter& events);
   void save();
 
   TrainOptions options_;
