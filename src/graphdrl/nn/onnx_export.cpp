@@ -12,7 +12,7 @@ namespace graphdrl {
 namespace {
 
 constexpr std::int64_t kIrVersion = 8;
-constexpr std::int64_t kOpset = 16;  // the first whose ScatterND adds up
+constexpr std::int64_t kOpset = 16;  // the first whose ScatterElements adds up
 
 using Names = std::vector<std::string>;
 
@@ -163,10 +163,12 @@ GraphInputs add_graph_inputs(OnnxModel& model) {
           .count = model.add("Add", {last_graph, model.constant({1})})};
 }
 
-// Adds rows up where `to` [rows, 1] says, in a matrix of that shape.
+// Adds rows up where `to` [rows, 1] says, in a matrix of that shape. Not by ScatterND: several threads of ONNX Runtime
+// 1.23 add to one row at once there, and some sums are lost.
 std::string add_rows(OnnxModel& model, const std::string& shape, const std::string& to, const std::string& rows) {
   const std::string zeros = model.add("ConstantOfShape", {shape});
-  return model.add("ScatterND", {zeros, to, rows}).with("reduction", "add");
+  const std::string indices = model.add("Expand", {to, model.add("Shape", {rows})});
+  return model.add("ScatterElements", {zeros, indices, rows}).with("axis", std::int64_t{0}).with("reduction", "add");
 }
 
 // Sums each graph's rows: [N, width] to [B, width].
