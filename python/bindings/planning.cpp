@@ -102,7 +102,8 @@ void bind_planning(nb::module_& module) {
         write_plan(report, file);
       });
   module.def("plan", &plan, nb::arg("world"), nb::arg("budget"), nb::arg("start").none(), nb::arg("end").none(),
-             nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"), nb::arg("on_progress").none());
+             nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"),
+             nb::arg("on_progress").none());
   module.def("upper_bound", &upper_bound, nb::arg("world"), nb::arg("budget"), nb::arg("start").none(),
              nb::arg("end").none(), nb::arg("time_limit").none());
 }

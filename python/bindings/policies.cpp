@@ -19,7 +19,8 @@ Parameters from_tensors(const Tensors& tensors) {
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const InArray<float>& tensor = tensors[i];
     Shape shape;
-    for (std::size_t axis = 0; axis < tensor.ndim(); ++axis) shape.push_back(static_cast<std::int64_t>(tensor.shape(axis)));
+    for (std::size_t axis = 0; axis < tensor.ndim(); ++axis)
+      shape.push_back(static_cast<std::int64_t>(tensor.shape(axis)));
     if (shape != specs[i].shape) {
       throw Error({.what = "bad shape of tensor " + in_quotes(specs[i].name),
                    .expected = format_shape(specs[i].shape),
@@ -61,8 +62,9 @@ void add_graphs(const GraphBatch& graphs, nb::dict& inputs) {
   }
   const std::size_t edges = sources.size();
   sources.insert(sources.end(), targets.begin(), targets.end());
-  inputs["edge_index"] = edges > 0 ? nb::cast(to_numpy(std::move(sources), edges))
-                                   : nb::cast(nb::ndarray<nb::numpy, std::int64_t, nb::ndim<2>>(nullptr, {2, 0}, nb::none()));
+  inputs["edge_index"] = edges > 0
+                             ? nb::cast(to_numpy(std::move(sources), edges))
+                             : nb::cast(nb::ndarray<nb::numpy, std::int64_t, nb::ndim<2>>(nullptr, {2, 0}, nb::none()));
   inputs["batch"] = to_numpy(std::move(batch));
 }
 

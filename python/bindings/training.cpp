@@ -16,7 +16,7 @@ nb::dict dict_of(const Row& row) {
   nb::dict out;
   for (const auto& [name, value] : row) {
     const bool whole = &name == &row.front().first;  // the count
-    out[name.c_str()] = whole ? nb::object(nb::int_(static_cast<std::int64_t>(value)))
+    out[name.c_str()] = whole               ? nb::object(nb::int_(static_cast<std::int64_t>(value)))
                         : std::isnan(value) ? nb::object(nb::none())
                                             : nb::object(nb::float_(value));
   }
@@ -45,8 +45,7 @@ bool train(Trainer& trainer, const nb::object& on_metrics) {
       if (!on_metrics.is_none() && nb::cast<bool>(nb::bool_(on_metrics(dict_of(row))))) stopped = true;
     }
   };
-  run_unlocked([&] { finished = trainer.run([&] { return stopped.load(); }, tell); }, listen,
-               [&] { stopped = true; });
+  run_unlocked([&] { finished = trainer.run([&] { return stopped.load(); }, tell); }, listen, [&] { stopped = true; });
   return finished;
 }
 

@@ -1,24 +1,81 @@
-"""Environments for Gymnasium: the paper's decision process on grids. Importing this module registers them."""
+"""Environments for Gymnasium; importing this module registers them.
+
+- `GraphDRL/Grid-v0`: the paper's decision process, directions on a grid.
+- `GraphDRL/Graph-v0`: any graph, an action is a neighbour.
+- `GraphDRL/FirstVisit-v0`: any graph, an action is a walk to an unvisited node.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import gymnasium
 import numpy as np
-from gymnasium.vector import AutoresetMode
+from gymnasium import spaces
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from . import _core
 from ._core import Error
-from .world import Node, World, shown
+from .world import Budget, Node, World, budget_text, shown
 
 GRID_ID = "GraphDRL/Grid-v0"
+GRAPH_ID = "GraphDRL/Graph-v0"
+FIRST_VISIT_ID = "GraphDRL/FirstVisit-v0"
+
 _REWARDS = ("visit_penalty", "coverage_gain")
-_RENDER_MODES = ("ansi", "rgb_array")
+_OBSERVATIONS = ("flat", "graph")
+_RENDER_MODES = ("ansi", "rgb_array", "human")
+_FRAMES_PER_SECOND = 8
 _CELL_PIXELS = 24
 _COLOURS = {"free": (255, 255, 255), "blocked": (60, 60, 70), "visited": (150, 200, 230), "current": (220, 90, 40)}
+
+
+def _require(value: str, choices: tuple[str, ...], what: str) -> None:
+    if value not in choices:
+        raise Error(f"bad {what}: expected {' or '.join(choices)}, got {shown(value)}")
+
+
+class _Setting:
+    """Where episodes take place, as all environments take it."""
+
+    def __init__(
+        self,
+        map: str | World | None,
+        family: str | None,
+        size: int,
+        weighted: bool,
+        directed: bool,
+        budget: Budget,
+        reward: str,
+        start: Node | None,
+        return_to_start: bool,
+    ) -> None:
+        _require(reward, _REWARDS, "reward")
+        if family is not None and map is not None:
+            raise Error("bad map: expected a map or a family of random worlds, got both")
+        self.world: World | None = None
+        if family is None:
+            self.world = _world_of("paper:a" if map is None else map)
+        elif start is not None:
+            raise Error("bad start: random worlds have none to choose")
+        self.budget = budget_text(budget)
+        self.state = (
+            None if self.world is None else self.world._core, (family or "", size, weighted, directed), self.budget,
+            -1 if start is None or self.world is None else self.world.number(start), reward == "coverage_gain",
+            return_to_start,
+        )  # fmt: skip
+        if self.world is not None:
+            self.nodes = self.world.node_count
+        else:
+            self.nodes = size * size if family in _core.GRID_FAMILIES else size
+
+    def start_of(self, options: dict[str, Any] | None) -> int:
+        if options is None or "start" not in options:
+            return -1
+        if self.world is None:
+            raise Error("bad start: random worlds have none to choose")
+        return self.world.number(options["start"])
 
 
 def _world_of(map: str | World) -> World:
@@ -29,153 +86,207 @@ def _world_of(map: str | World) -> World:
     raise Error(f"bad map: expected a World or the name of a map, got {shown(map)}")
 
 
-class _Grid:
-    """What one environment and many share: the episodes, their spaces."""
+class _Kind:
+    """The episodes of one kind of environment, and their spaces."""
 
-    def __init__(
-        self,
-        map: str | World,
-        budget: float,
-        reward: str,
-        end_at_full_coverage: bool,
-        punish_blocked_by_visits: bool,
-        start: Node | None,
-        count: int,
-        restarts: bool,
-    ) -> None:
-        if reward not in _REWARDS:
-            raise Error(f"bad reward: expected {' or '.join(_REWARDS)}, got {shown(reward)}")
-        self.world = _world_of(map)
-        if self.world.shape is None:
-            raise Error(f"{self.world.name}: directions need a grid map")
-        self.episodes = _core.GridEpisodes(
-            self.world._core, float(budget), reward == "coverage_gain", end_at_full_coverage, punish_blocked_by_visits,
-            -1 if start is None else self.world.number(start), count, restarts,
-        )  # fmt: skip
-        rows, columns = self.world.shape
-        most = [max(rows - 1, 1), max(columns - 1, 1), 1, float(budget) + 1, 1, 4, 1]
-        self.observation_space = gymnasium.spaces.Box(
-            np.float32(0), np.tile(np.array(most, np.float32), self.world.node_count), dtype=np.float32
-        )
-        self.action_space = gymnasium.spaces.Discrete(4)
+    def __init__(self, setting: _Setting, episodes: Any, observations: Any, action_count: int, masks: bool) -> None:
+        self.setting = setting
+        self.episodes = episodes
+        self.observation_space = observations
+        self.action_space = spaces.Discrete(action_count)
+        self.masks = masks
+        self.graph_space: spaces.Graph | None = None
 
     def seed(self, index: int, random: np.random.Generator) -> None:
         self.episodes.seed(index, int(random.integers(2**63)))
 
-    def start_of(self, options: dict[str, Any] | None) -> int:
-        if options is None or "start" not in options:
-            return -1
-        return self.world.number(options["start"])
+    def told(self) -> dict[str, NDArray[Any]]:
+        """What infos say, of all environments."""
+        told = {"visited": self.episodes.visited, "position": self.episodes.positions}
+        if self.masks:
+            told |= {"action_mask": self.episodes.action_masks, "targets": self.episodes.targets}
+        return told
 
 
-class GridEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
-    """One explorer on a grid map, as in the paper: visit as many cells as the budget allows.
+def _grid_kind(
+    count: int, restarts: bool, end_at_full_coverage: bool, punish_blocked_by_visits: bool, **options: Any
+) -> _Kind:
+    setting = _Setting(weighted=False, directed=False, return_to_start=False, **options)
+    family, size = options["family"], options["size"]
+    if setting.world is not None:
+        if setting.world.shape is None:
+            raise Error(f"{setting.world.name}: directions need a grid map")
+        rows, columns = setting.world.shape
+        budget = _core.budget_in(setting.world._core, setting.budget)
+    else:
+        if family not in _core.GRID_FAMILIES:
+            raise Error(f"bad family: expected {', '.join(_core.GRID_FAMILIES)}, got {shown(family)}")
+        rows = columns = size
+        budget = _core.budget_in(World.from_grid(np.zeros((max(size, 1), max(size, 1)), bool))._core, setting.budget)
+    episodes = _core.GridEpisodes(
+        setting.state, end_at_full_coverage, punish_blocked_by_visits, count, restarts, setting.nodes
+    )
+    most = [max(rows - 1, 1), max(columns - 1, 1), 1, budget + 1, 1, 4, 1]
+    box = spaces.Box(np.float32(0), np.tile(np.array(most, np.float32), setting.nodes), dtype=np.float32)
+    return _Kind(setting, episodes, box, 4, masks=False)
 
-    Actions: 0 left, 1 up, 2 right, 3 down. A move into an obstacle or off the map costs a step and stays put.
 
-    Observation: Box [7 N] of float32, the paper's features of each cell, one cell after the other by rows: row, column,
-    obstacle, visits, wall, unvisited neighbours, current. `observation.reshape(-1, 7)` is the matrix of the paper.
+def _graph_kind(count: int, restarts: bool, max_neighbours: int | None, **options: Any) -> _Kind:
+    setting = _Setting(**options)
+    if max_neighbours is None:
+        if setting.world is not None:
+            max_neighbours = max(_degree_of(setting.world), 1)
+        else:
+            max_neighbours = 4 if options["family"] in _core.GRID_FAMILIES else max(setting.nodes - 1, 1)
+    if not isinstance(max_neighbours, int) or not 1 <= max_neighbours <= 1_000_000:
+        raise Error(f"bad max_neighbours: expected 1 to 1000000, got {shown(max_neighbours)}")
+    episodes = _core.GraphEpisodes(setting.state, count, restarts, setting.nodes, max_neighbours)
+    box = spaces.Box(0, 1, episodes.observations.shape[1:], np.float32)
+    kind = _Kind(setting, episodes, box, max_neighbours, masks=True)
+    kind.graph_space = spaces.Graph(
+        spaces.Box(0, 1, (_core.GRAPH_NODE_FEATURES,), np.float32), spaces.Box(0, np.inf, (1,), np.float32)
+    )
+    return kind
 
-    Reward: `visit_penalty` (eq. 3): 0.1 for a new cell, -0.1 times the visits before of another, -0.5 for a blocked
-    move; or `coverage_gain` (eq. 2). An episode is truncated where the budget is spent. It terminates at full coverage,
-    with a bonus of 1, where `end_at_full_coverage`, which the paper's author's code does and the paper does not.
 
-    It begins at `start`, else at a random free cell; `reset(options={"start": cell})` says otherwise for one episode.
-    Infos: `visited`, how many cells, and `position`, the number of the current one.
-    """
+def _first_visit_kind(count: int, restarts: bool, max_visits: int, **options: Any) -> _Kind:
+    setting = _Setting(**options)
+    if not isinstance(max_visits, int) or not 1 <= max_visits <= 96:
+        raise Error(f"bad max_visits: expected 1 to 96, got {shown(max_visits)}")
+    episodes = _core.FirstVisitEpisodes(setting.state, count, restarts, max_visits)
+    box = spaces.Box(-16, 16, episodes.observations.shape[1:], np.float32)
+    kind = _Kind(setting, episodes, box, max_visits, masks=True)
+    kind.graph_space = spaces.Graph(
+        spaces.Box(-16, 16, (_core.EXPLORER_NODE_FEATURES,), np.float32), spaces.Box(0, np.inf, (1,), np.float32)
+    )
+    return kind
 
-    metadata = {"render_modes": list(_RENDER_MODES), "render_fps": 8}
 
-    def __init__(
-        self,
-        map: str | World = "paper:a",
-        budget: float = 25,
-        reward: str = "visit_penalty",
-        end_at_full_coverage: bool = False,
-        punish_blocked_by_visits: bool = False,
-        start: Node | None = None,
-        render_mode: str | None = None,
-    ) -> None:
-        if render_mode is not None and render_mode not in _RENDER_MODES:
-            raise Error(f"bad render mode: expected {' or '.join(_RENDER_MODES)}, got {shown(render_mode)}")
-        self._grid = _Grid(
-            map, budget, reward, end_at_full_coverage, punish_blocked_by_visits, start, count=1, restarts=False
-        )
-        self.world = self._grid.world
-        self.observation_space = self._grid.observation_space
-        self.action_space = self._grid.action_space
+def _degree_of(world: World) -> int:
+    """The most neighbours that a node has, obstacles aside."""
+    ends, _ = world.edges()
+    free = ~world.blocked.ravel()
+    ends = ends[free[ends].all(axis=1)]
+    degrees = np.bincount(ends[:, 0], minlength=1)
+    if not world.directed:
+        size = world.node_count
+        degrees = np.bincount(ends[:, 0], minlength=size) + np.bincount(ends[:, 1], minlength=size)
+    return int(degrees.max(initial=0))
+
+
+class _Env(gymnasium.Env[Any, np.int64]):
+    """What the single environments share."""
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(_RENDER_MODES), "render_fps": _FRAMES_PER_SECOND}
+
+    def __init__(self, kind: _Kind, observation: str, render_mode: str | None) -> None:
+        if render_mode is not None:
+            _require(render_mode, _RENDER_MODES, "render mode")
+        _require(observation, _OBSERVATIONS, "observation")
+        self._kind = kind
+        self._as_graph = observation == "graph"
+        self.observation_space = kind.graph_space if self._as_graph else kind.observation_space
+        self.action_space = kind.action_space
         self.render_mode = render_mode
-        self._seeded = False
+        self._begun = False
+        self._window: _Window | None = None
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+    @property
+    def world(self) -> World:
+        """The world of the episode."""
+        if self._kind.setting.world is not None:
+            return self._kind.setting.world
+        return World(self._kind.episodes.world(0))
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         super().reset(seed=seed)
-        if seed is not None or not self._seeded:
-            self._grid.seed(0, self.np_random)
-            self._seeded = True
-        self._grid.episodes.reset(np.ones(1, bool), self._grid.start_of(options))
+        if seed is not None or not self._begun:
+            self._kind.seed(0, self.np_random)
+            self._begun = True
+        self._kind.episodes.reset(np.ones(1, bool), self._kind.setting.start_of(options))
+        if self.render_mode == "human":
+            self.render()
         return self._observation(), self._info()
 
-    def step(self, action: int | np.int64) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        episodes = self._grid.episodes
+    def step(self, action: int | np.int64) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        episodes = self._kind.episodes
         episodes.step(np.array([action], np.int64))
+        if self.render_mode == "human":
+            self.render()
         over = bool(episodes.terminated[0]), bool(episodes.truncated[0])
         return self._observation(), float(episodes.rewards[0]), *over, self._info()
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which actions may be taken, [actions]: for MaskablePPO of sb3-contrib."""
+        return self._kind.episodes.action_masks[0].copy()
 
     def render(self) -> Any:
         if self.render_mode is None:
             return None
-        if not self._seeded:
+        if not self._begun:
             raise Error("nothing to render: reset() first")
-        walk = self._grid.episodes.walk(0)
-        visited = np.zeros(self.world.node_count, bool)
-        visited[walk] = True
-        return (_text if self.render_mode == "ansi" else _picture)(self.world, visited, int(walk[-1]))
+        walk = self._kind.episodes.walk(0)
+        if self.render_mode == "ansi":
+            return self._text(walk)
+        picture = _picture(self.world, walk)
+        if self.render_mode == "rgb_array":
+            return picture
+        if self._window is None:
+            self._window = _Window(self.world.name)
+        self._window.show(picture)
+        return None
 
-    def _observation(self) -> NDArray[np.float32]:
-        return self._grid.episodes.features[0].copy()
+    def close(self) -> None:
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+
+    def _text(self, walk: NDArray[np.int32]) -> str:
+        world = self.world
+        if world.shape is not None:
+            return _grid_text(world, walk)
+        here = world.names([walk[-1]])[0]
+        visited = int(self._kind.episodes.visited[0])
+        return f"at {here}: visited {visited} of {world.valid_count}, spent {self._kind.episodes.spent(0):g}\n"
+
+    def _observation(self) -> Any:
+        if not self._as_graph:
+            return self._kind.episodes.observations[0].copy()
+        return spaces.GraphInstance(*self._kind.episodes.graph(0))
 
     def _info(self) -> dict[str, Any]:
-        episodes = self._grid.episodes
-        return {"visited": int(episodes.visited[0]), "position": int(episodes.positions[0])}
+        told = {name: values[0] for name, values in self._kind.told().items()}
+        info = {name: value.copy() if isinstance(value, np.ndarray) else int(value) for name, value in told.items()}
+        if self._as_graph and hasattr(self._kind.episodes, "target_rows"):
+            info["target_rows"] = self._kind.episodes.target_rows(0)
+        return info
 
 
-class GridVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], NDArray[Any]]):
-    """Many environments as GridEnv, all stepped by one call; `gymnasium.make_vec(id, num_envs)` makes it.
+class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], NDArray[Any]]):
+    """What the vector environments share: all episodes are stepped by one call.
 
     Equal to SyncVectorEnv's, with the same seeds, step by step: an episode that is over begins anew with the next step.
     With `copy=False` observations are one array that every step writes anew. All else is always a copy.
     """
 
-    metadata = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": []}
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
+    if hasattr(gymnasium.vector, "AutoresetMode"):  # from Gymnasium 1.1 on; before, there was no other
+        metadata["autoreset_mode"] = gymnasium.vector.AutoresetMode.NEXT_STEP
 
-    def __init__(
-        self,
-        num_envs: int = 1,
-        map: str | World = "paper:a",
-        budget: float = 25,
-        reward: str = "visit_penalty",
-        end_at_full_coverage: bool = False,
-        punish_blocked_by_visits: bool = False,
-        start: Node | None = None,
-        copy: bool = True,
-    ) -> None:
-        self._grid = _Grid(
-            map, budget, reward, end_at_full_coverage, punish_blocked_by_visits, start, count=num_envs, restarts=True
-        )
-        self.world = self._grid.world
+    def __init__(self, kind: _Kind, num_envs: int, copy: bool) -> None:
+        self._kind = kind
         self.num_envs = num_envs
-        self.single_observation_space = self._grid.observation_space
-        self.single_action_space = self._grid.action_space
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.single_observation_space = kind.observation_space
+        self.single_action_space = kind.action_space
+        self.observation_space = batch_space(kind.observation_space, num_envs)
+        self.action_space = batch_space(kind.action_space, num_envs)
         self._copy = copy
         self._all = np.ones(num_envs, bool)
         self._random: list[np.random.Generator | None] = [None] * num_envs
-        self._features = self._grid.episodes.features
-        self._outcome = (self._grid.episodes.rewards, self._grid.episodes.terminated, self._grid.episodes.truncated)
-        self._told = {"visited": self._grid.episodes.visited, "position": self._grid.episodes.positions}
+        episodes = kind.episodes
+        self._observed = episodes.observations
+        self._outcome = (episodes.rewards, episodes.terminated, episodes.truncated)
+        self._told = kind.told()
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
@@ -190,20 +301,24 @@ class GridVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.i
             if one is not None or self._random[i] is None:
                 random, _ = gymnasium.utils.seeding.np_random(one)
                 self._random[i] = random
-                self._grid.seed(i, random)
+                self._kind.seed(i, random)
         mask = (options or {}).get("reset_mask", self._all)
-        self._grid.episodes.reset(np.ascontiguousarray(mask, bool), self._grid.start_of(options))
+        self._kind.episodes.reset(np.ascontiguousarray(mask, bool), self._kind.setting.start_of(options))
         return self._observations(), self._infos()
 
     def step(
         self, actions: NDArray[np.int64]
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        self._grid.episodes.step(np.ascontiguousarray(actions, np.int64))
+        self._kind.episodes.step(np.ascontiguousarray(actions, np.int64))
         rewards, terminated, truncated = self._outcome
         return self._observations(), rewards.copy(), terminated.copy(), truncated.copy(), self._infos()
 
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which actions may be taken, [environments, actions]."""
+        return self._kind.episodes.action_masks.copy()
+
     def _observations(self) -> NDArray[np.float32]:
-        return self._features.copy() if self._copy else self._features
+        return self._observed.copy() if self._copy else self._observed
 
     def _infos(self) -> dict[str, Any]:
         infos: dict[str, Any] = {}
@@ -213,28 +328,250 @@ class GridVectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.i
         return infos
 
 
-def _text(world: World, visited: NDArray[np.bool_], current: int) -> str:
-    chars = np.where(world.blocked.ravel(), "#", np.where(visited, "o", "."))
-    chars[current] = "@"
+class GridEnv(_Env):
+    """One explorer on a grid map, as in the paper: visit as many cells as the budget allows.
+
+    Actions: 0 left, 1 up, 2 right, 3 down. A move into an obstacle or off the map costs a step and stays put.
+
+    Observation: Box [7 N] of float32, the paper's features of each cell, one cell after the other by rows: row, column,
+    obstacle, visits, wall, unvisited neighbours, current. `observation.reshape(-1, 7)` is the matrix of the paper.
+
+    Reward: `visit_penalty` (eq. 3): 0.1 for a new cell, -0.1 times the visits before of another, -0.5 for a blocked
+    move; or `coverage_gain` (eq. 2). An episode is truncated where the budget is spent. It terminates at full coverage,
+    with a bonus of 1, where `end_at_full_coverage`, which the paper's author's code does and the paper does not.
+
+    map: a World or the name of a map, by default `paper:a`; or instead a family of random worlds and the side of their
+    squares, drawn anew with every reset. budget: steps, or text as "1.1x". It begins at `start`, else at a random free
+    cell; `reset(options={"start": cell})` says otherwise for one episode. Infos: `visited`, how many cells, and
+    `position`, the number of the current one.
+    """
+
+    def __init__(
+        self,
+        map: str | World | None = None,
+        budget: Budget = 25,
+        reward: str = "visit_penalty",
+        end_at_full_coverage: bool = False,
+        punish_blocked_by_visits: bool = False,
+        start: Node | None = None,
+        family: str | None = None,
+        size: int = 5,
+        render_mode: str | None = None,
+    ) -> None:
+        kind = _grid_kind(
+            1, False, end_at_full_coverage, punish_blocked_by_visits, map=map, family=family, size=size, budget=budget,
+            reward=reward, start=start,
+        )  # fmt: skip
+        super().__init__(kind, "flat", render_mode)
+
+
+class GridVectorEnv(_VectorEnv):
+    """Many environments as GridEnv, with its options; `gymnasium.make_vec(id, num_envs)` makes it."""
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        map: str | World | None = None,
+        budget: Budget = 25,
+        reward: str = "visit_penalty",
+        end_at_full_coverage: bool = False,
+        punish_blocked_by_visits: bool = False,
+        start: Node | None = None,
+        family: str | None = None,
+        size: int = 5,
+        copy: bool = True,
+    ) -> None:
+        kind = _grid_kind(
+            num_envs, True, end_at_full_coverage, punish_blocked_by_visits, map=map, family=family, size=size,
+            budget=budget, reward=reward, start=start,
+        )  # fmt: skip
+        super().__init__(kind, num_envs, copy)
+
+
+class GraphEnv(_Env):
+    """One explorer on any graph: visit as much as the budget allows, edge by edge.
+
+    Actions: the neighbours of the current node, in ascending order of their numbers. A masked action, one that leads
+    nowhere or cannot be paid for, costs an edge of mean cost and stays put; where that cannot be paid for, it ends the
+    episode. Masks: `info["action_mask"]` and `action_masks()`; `info["targets"]`: where actions lead, -1 for nowhere.
+
+    Observation `flat`: Box [4 N + 5 A + 2] of float32 from 0 to 1: of each node open, visited, current, prize (in eight
+    mean prizes); of each action legal, visited, cost (in eight mean edges), prize, unvisited neighbours there (in
+    eight); the budget left and the nodes visited, as shares. `graph`: spaces.Graph, a row for each node (open, visited,
+    current, prize, one legal step away, budget left), edges both ways with their cost in mean edges.
+
+    Reward: `visit_penalty` (eq. 3; a masked action is a blocked move) or `coverage_gain` (eq. 2: the share of all nodes,
+    or of all prizes, that a first visit brings). An episode terminates where nothing can be paid for, or everything is
+    visited: the budget is seen, so that is the process's own end.
+
+    map, family, size, budget, start: as of GridEnv; families of graphs may be `weighted` and `directed`. return_to_start:
+    the walk must end where it began; moves that make that too dear are masked. max_neighbours: A, how many actions there
+    are; by default as many as the map needs, of random graphs size - 1.
+    """
+
+    def __init__(
+        self,
+        map: str | World | None = None,
+        budget: Budget = "1.1x",
+        reward: str = "visit_penalty",
+        start: Node | None = None,
+        return_to_start: bool = False,
+        family: str | None = None,
+        size: int = 20,
+        weighted: bool = False,
+        directed: bool = False,
+        max_neighbours: int | None = None,
+        observation: str = "flat",
+        render_mode: str | None = None,
+    ) -> None:
+        kind = _graph_kind(
+            1, False, max_neighbours, map=map, family=family, size=size, weighted=weighted, directed=directed,
+            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
+        )  # fmt: skip
+        super().__init__(kind, observation, render_mode)
+
+
+class GraphVectorEnv(_VectorEnv):
+    """Many environments as GraphEnv, with its options and flat observations."""
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        map: str | World | None = None,
+        budget: Budget = "1.1x",
+        reward: str = "visit_penalty",
+        start: Node | None = None,
+        return_to_start: bool = False,
+        family: str | None = None,
+        size: int = 20,
+        weighted: bool = False,
+        directed: bool = False,
+        max_neighbours: int | None = None,
+        copy: bool = True,
+    ) -> None:
+        kind = _graph_kind(
+            num_envs, True, max_neighbours, map=map, family=family, size=size, weighted=weighted, directed=directed,
+            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
+        )  # fmt: skip
+        super().__init__(kind, num_envs, copy)
+
+
+class FirstVisitEnv(_Env):
+    """One explorer on any graph, from first visit to first visit: an action walks to an unvisited node next to visited
+    ones, by the cheapest way through visited ground.
+
+    Actions: the `max_visits` nearest first visits, nearest first. Masks and targets as of GraphEnv; masked actions cost
+    what they cost there.
+
+    Observation `flat`: Box [12 max_visits] of float32 from -16 to 16: of each action 1 where there is one, and what the
+    explorer sees of it (docs/explorer.md, "visit features"). `graph`: spaces.Graph of the nodes around the current one,
+    with what the explorer sees of each, edges both ways with their cost in mean edges; `info["target_rows"]`: the row of
+    each action's target, -1 where there is none.
+
+    Reward: the sum over the walk of GraphEnv's. An episode terminates where no first visit can be paid for. The options
+    are those of GraphEnv.
+    """
+
+    def __init__(
+        self,
+        map: str | World | None = None,
+        budget: Budget = "1.1x",
+        reward: str = "coverage_gain",
+        start: Node | None = None,
+        return_to_start: bool = False,
+        family: str | None = None,
+        size: int = 20,
+        weighted: bool = False,
+        directed: bool = False,
+        max_visits: int = 16,
+        observation: str = "flat",
+        render_mode: str | None = None,
+    ) -> None:
+        kind = _first_visit_kind(
+            1, False, max_visits, map=map, family=family, size=size, weighted=weighted, directed=directed,
+            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
+        )  # fmt: skip
+        super().__init__(kind, observation, render_mode)
+
+
+class FirstVisitVectorEnv(_VectorEnv):
+    """Many environments as FirstVisitEnv, with its options and flat observations."""
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        map: str | World | None = None,
+        budget: Budget = "1.1x",
+        reward: str = "coverage_gain",
+        start: Node | None = None,
+        return_to_start: bool = False,
+        family: str | None = None,
+        size: int = 20,
+        weighted: bool = False,
+        directed: bool = False,
+        max_visits: int = 16,
+        copy: bool = True,
+    ) -> None:
+        kind = _first_visit_kind(
+            num_envs, True, max_visits, map=map, family=family, size=size, weighted=weighted, directed=directed,
+            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
+        )  # fmt: skip
+        super().__init__(kind, num_envs, copy)
+
+
+class _Window:
+    """Pictures one after the other, in a window of pygame."""
+
+    def __init__(self, title: str) -> None:
+        try:
+            import pygame
+        except ImportError as error:
+            raise gymnasium.error.DependencyNotInstalled("render_mode='human' needs pygame: pip install pygame") from error
+        self._pygame = pygame
+        pygame.display.init()
+        pygame.display.set_caption(title)
+        self._clock = pygame.time.Clock()
+        self._screen: Any = None
+
+    def show(self, picture: NDArray[np.uint8]) -> None:
+        size = picture.shape[1], picture.shape[0]
+        if self._screen is None or self._screen.get_size() != size:
+            self._screen = self._pygame.display.set_mode(size)
+        self._pygame.event.pump()
+        self._pygame.surfarray.blit_array(self._screen, picture.swapaxes(0, 1))
+        self._pygame.display.flip()
+        self._clock.tick(_FRAMES_PER_SECOND)
+
+    def close(self) -> None:
+        self._pygame.display.quit()
+
+
+def _grid_text(world: World, walk: NDArray[np.int32]) -> str:
+    chars = np.where(world.blocked.ravel(), "#", ".")
+    chars[walk] = "o"
+    chars[walk[-1]] = "@"
     return "\n".join("".join(row) for row in chars.reshape(world.shape)) + "\n"
 
 
-def _picture(world: World, visited: NDArray[np.bool_], current: int) -> NDArray[np.uint8]:
-    """RGB, [rows 24, columns 24, 3]."""
+def _picture(world: World, walk: NDArray[np.int32]) -> NDArray[np.uint8]:
+    """RGB, [rows, columns, 3]: of a grid its cells, of a graph its nodes and the walk."""
+    if world.shape is None:
+        return _core.picture_of(world._core, walk)
     cells = np.empty((world.node_count, 3), np.uint8)
     cells[:] = _COLOURS["free"]
-    cells[visited] = _COLOURS["visited"]
+    cells[walk] = _COLOURS["visited"]
     cells[world.blocked.ravel()] = _COLOURS["blocked"]
-    cells[current] = _COLOURS["current"]
-    rows, columns = world.shape or (0, 0)
+    cells[walk[-1]] = _COLOURS["current"]
+    rows, columns = world.shape
     picture = cells.reshape(rows, columns, 3).repeat(_CELL_PIXELS, axis=0).repeat(_CELL_PIXELS, axis=1)
     picture[::_CELL_PIXELS] = picture[:, ::_CELL_PIXELS] = 225
     return picture
 
 
-if GRID_ID not in gymnasium.registry:
-    gymnasium.register(
-        GRID_ID,
-        entry_point="graphdrl.environments:GridEnv",
-        vector_entry_point="graphdrl.environments:GridVectorEnv",
-    )
+for _id, _name in ((GRID_ID, "Grid"), (GRAPH_ID, "Graph"), (FIRST_VISIT_ID, "FirstVisit")):
+    if _id not in gymnasium.registry:
+        gymnasium.register(
+            _id,
+            entry_point=f"graphdrl.environments:{_name}Env",
+            vector_entry_point=f"graphdrl.environments:{_name}VectorEnv",
+        )

@@ -1,5 +1,6 @@
 """The environments for Gymnasium, beside Gymnasium's own tools and a plain environment in NumPy."""
 
+import os
 import warnings
 
 import graphdrl
@@ -9,7 +10,22 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # render_mode="human" without a screen
 GRID = "GraphDRL/Grid-v0"
+GRAPH = "GraphDRL/Graph-v0"
+FIRST_VISIT = "GraphDRL/FirstVisit-v0"
+SETTINGS = [
+    (GRID, {}),
+    (GRID, {"reward": "coverage_gain", "map": "paper:j"}),
+    (GRID, {"end_at_full_coverage": True, "map": "paper:j", "budget": 7}),
+    (GRID, {"family": "obstacles", "size": 6, "budget": "0.5x"}),
+    (GRAPH, {}),
+    (GRAPH, {"map": graphdrl.World.random("geometric", 15, 1, weighted=True), "return_to_start": True}),
+    (GRAPH, {"family": "erdos-renyi", "size": 12, "directed": True, "reward": "coverage_gain", "budget": "0.6x"}),
+    (FIRST_VISIT, {}),
+    (FIRST_VISIT, {"map": graphdrl.World.random("tree", 14, 1, weighted=True), "return_to_start": True, "max_visits": 3}),
+    (FIRST_VISIT, {"family": "barabasi-albert", "size": 18, "weighted": True, "reward": "visit_penalty"}),
+]
 MAPS = ["paper:a", "paper:f", "paper:j"]
 
 
@@ -56,12 +72,15 @@ class PlainGrid:
         return out.ravel()
 
 
-@pytest.mark.parametrize("options", [{}, {"reward": "coverage_gain", "map": "paper:j"}, {"end_at_full_coverage": True}])
-def test_gymnasiums_checker_has_nothing_to_say(options):
+@pytest.mark.parametrize(("name", "options"), SETTINGS)
+def test_gymnasiums_checker_has_nothing_to_say(name, options):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        check_env(gymnasium.make(GRID, **options).unwrapped)
-        check_env(gymnasium.make(GRID, render_mode="rgb_array", **options).unwrapped)
+        warnings.filterwarnings("ignore", module="pygame|pkg_resources")  # its own
+        check_env(gymnasium.make(name, **options).unwrapped)
+        check_env(gymnasium.make(name, render_mode="rgb_array", **options).unwrapped, skip_render_check=True)
+        if name != GRID:
+            check_env(gymnasium.make(name, observation="graph", **options).unwrapped, skip_render_check=True)
 
 
 @pytest.mark.parametrize("full_coverage", [False, True])
@@ -92,11 +111,11 @@ def test_full_coverage_terminates_with_a_bonus():
     assert (reward, terminated, truncated, info["visited"]) == (1.1, True, False, 2)
 
 
-@pytest.mark.parametrize("options", [{}, {"map": "paper:j", "budget": 7, "end_at_full_coverage": True}])
-def test_many_environments_equal_gymnasiums_one_by_one(options):
-    ours = gymnasium.make_vec(GRID, num_envs=9, vectorization_mode="vector_entry_point", **options)
-    theirs = gymnasium.make_vec(GRID, num_envs=9, vectorization_mode="sync", **options)
-    assert isinstance(ours.unwrapped, graphdrl.environments.GridVectorEnv)
+@pytest.mark.parametrize(("name", "options"), SETTINGS)
+def test_many_environments_equal_gymnasiums_one_by_one(name, options):
+    ours = gymnasium.make_vec(name, num_envs=9, vectorization_mode="vector_entry_point", **options)
+    theirs = gymnasium.make_vec(name, num_envs=9, vectorization_mode="sync", **options)
+    assert type(ours.unwrapped).__module__ == "graphdrl.environments"
     assert ours.observation_space == theirs.observation_space and ours.action_space == theirs.action_space
     random = np.random.default_rng(0)
 
@@ -110,12 +129,12 @@ def test_many_environments_equal_gymnasiums_one_by_one(options):
 
     assert_equal(ours.reset(seed=7), theirs.reset(seed=7))
     for step in range(300):
-        actions = random.integers(4, size=9)
+        actions = random.integers(ours.single_action_space.n, size=9)
         assert_equal(ours.step(actions), theirs.step(actions))
         if step == 150:
             assert_equal(ours.reset(), theirs.reset())
-        if step == 200:
-            start = {"options": {"start": (0, 0)}}
+        if step == 200 and "family" not in options:
+            start = {"options": {"start": ours.unwrapped._kind.setting.world.nodes[0]}}
             assert_equal(ours.reset(**start), theirs.reset(**start))
 
 
@@ -143,10 +162,166 @@ def test_pictures():
     assert picture.shape == (120, 120, 3) and picture.dtype == np.uint8 and len(np.unique(picture)) > 3
 
 
+@pytest.mark.parametrize(("family", "weighted"), [("maze", False), ("geometric", True), ("watts-strogatz", False)])
+def test_walks_of_plans_go_through_a_graph(family, weighted):
+    """Every step of a plan can be taken, costs what it should, and visits what the plan says."""
+    world = graphdrl.World.random(family, 21, 2, weighted=weighted)
+    plan = graphdrl.plan(world, "0.6x", end="start")
+    env = gymnasium.make(
+        GRAPH, map=world, budget="0.6x", start=plan.walk[0], return_to_start=True, reward="coverage_gain"
+    )
+    _, info = env.reset()
+    rewards = 0.0
+    for node in plan.nodes[1:]:
+        action = int(np.flatnonzero(info["targets"] == node)[0])
+        assert info["action_mask"][action] and env.unwrapped.action_masks()[action]
+        observation, reward, terminated, truncated, info = env.step(action)
+        rewards += reward
+        assert info["position"] == node and not truncated
+    assert info["visited"] == plan.visited
+    assert (rewards * world.valid_count + 1) == pytest.approx(plan.visited)
+    assert observation[-2] == pytest.approx(1 - plan.cost / plan.budget, abs=1e-6)
+    assert observation[-1] == pytest.approx(plan.coverage)
+
+
+@pytest.mark.parametrize("options", [{"family": "tree", "size": 20, "weighted": True}, {"family": "rooms", "size": 11}])
+@pytest.mark.parametrize("returns", [False, True])
+def test_the_explorer_walks_first_visits(options, returns):
+    """Its choices, taken in the environment, are its plan; what the environment shows is what it sees."""
+    explorer = graphdrl.Policy.load()
+    env = gymnasium.make(
+        FIRST_VISIT, budget="0.9x", reward="visit_penalty", return_to_start=returns, max_visits=96, **options
+    )
+    for seed in range(5):
+        observation, info = env.reset(seed=seed)
+        world = env.unwrapped.world
+        start = world.names([info["position"]])[0]
+        terminated, walk = False, [info["position"]]
+        while not terminated:
+            walk = env.unwrapped._kind.episodes.walk(0)
+            visits = explorer.first_visits(world.state(world.names(walk), "0.9x", start if returns else None))
+            count = len(visits.nodes)
+            assert info["targets"][:count].tolist() == visits.nodes.tolist()
+            assert info["action_mask"].sum() == count
+            seen = explorer.inputs(world.state(world.names(walk), "0.9x", start if returns else None))["visit_x"]
+            np.testing.assert_array_equal(observation.reshape(-1, 12)[:count, 1:], seen)
+            observation, reward, terminated, truncated, info = env.step(visits.choice)
+            assert not truncated
+        plan = graphdrl.plan(world, "0.9x", start, end="start" if returns else None, policy="explorer")
+        walk = env.unwrapped._kind.episodes.walk(0)
+        assert walk.tolist() == plan.nodes[: len(walk)].tolist()
+        assert info["visited"] == plan.visited
+
+
+def test_masked_actions_cost_an_edge_and_end_what_cannot_pay():
+    world = graphdrl.World.from_edges([[0, 1], [1, 2]], [2.0, 4.0], labels=["a", "b", "c"])  # a mean edge costs 3
+    for name in (GRAPH, FIRST_VISIT):
+        env = gymnasium.make(name, map=world, budget=7, start="a", reward="visit_penalty")
+        _, info = env.reset()
+        assert info["action_mask"].sum() == 1
+        _, reward, terminated, *_, info = env.step(1)
+        assert (reward, terminated, info["position"]) == (-0.5, False, 0)
+        _, reward, terminated, *_ = env.step(1)
+        assert (reward, terminated) == (-0.5, True)  # 1 is left, and an edge costs 2
+        env = gymnasium.make(name, map=world, budget=2, start="a", reward="visit_penalty")
+        env.reset()
+        assert env.step(1)[1:3] == (0.0, True)  # nothing can be paid for
+
+
+def test_prizes_are_what_coverage_gains():
+    world = graphdrl.World.from_edges([[0, 1], [1, 2]], prizes=[1, 5, 2])
+    for name in (GRAPH, FIRST_VISIT):
+        env = gymnasium.make(name, map=world, budget=9, start=0, reward="coverage_gain")
+        env.reset()
+        assert env.step(0)[1] == 5 / 8
+
+
+@pytest.mark.parametrize(("name", "family"), [(GRID, "maze"), (GRAPH, "tree"), (FIRST_VISIT, "rooms")])
+def test_random_worlds_are_new_with_every_reset_and_the_same_with_a_seed(name, family):
+    env = gymnasium.make(name, family=family, size=9, budget="1.1x").unwrapped
+
+    def edges():
+        return env.world.edges()[0].tolist(), env.world.blocked.tolist()
+
+    env.reset(seed=5)
+    first = edges()
+    env.reset()
+    second = edges()
+    assert first != second
+    env.reset(seed=5)
+    assert edges() == first
+    env.reset()
+    assert edges() == second
+
+
+def test_graph_observations_hang_together():
+    world = graphdrl.World.random("geometric", 12, 3, weighted=True)
+    env = gymnasium.make(GRAPH, map=world, observation="graph", start=0)
+    observation, info = env.reset()
+    assert observation.nodes.shape == (world.node_count, 6) and observation.edges.shape == (2 * world.edge_count, 1)
+    legal = np.flatnonzero(observation.nodes[:, 4])
+    assert legal.tolist() == info["targets"][info["action_mask"]].tolist()
+    assert np.flatnonzero(observation.nodes[:, 2]).tolist() == [0]
+    ends, costs = world.edges()
+    linked = {tuple(link): cost for link, cost in zip(observation.edge_links.tolist(), observation.edges[:, 0].tolist())}
+    for (a, b), cost in zip(ends.tolist(), costs.tolist()):
+        assert linked[a, b] == linked[b, a] == pytest.approx(cost / costs.mean(), rel=1e-5)
+    env = gymnasium.make(FIRST_VISIT, map=world, observation="graph", start=0)
+    observation, info = env.reset()
+    rows = info["target_rows"][info["action_mask"]]
+    assert observation.nodes[rows, 2].all() and observation.nodes[:, 2].sum() == len(rows)  # "candidate"
+
+
+def test_a_first_visit_that_is_too_far_to_be_seen_can_be_made():
+    length = 300
+    world = graphdrl.World.from_edges([(i, i + 1) for i in range(length - 1)])
+    env = gymnasium.make(FIRST_VISIT, map=world, budget=10 * length, start=150)
+    env.reset()
+    terminated, steps = False, 0
+    while not terminated:
+        *_, terminated, _, info = env.step(0)
+        steps += 1
+    assert info["visited"] == length and steps == length - 1
+
+
+@pytest.mark.parametrize("name", [GRID, GRAPH, FIRST_VISIT])
+def test_all_ways_to_render(name):
+    for world in ("paper:a", graphdrl.World.random("tree", 9)):
+        if name == GRID and world != "paper:a":
+            continue
+        env = gymnasium.make(name, map=world, render_mode="human")
+        env.reset(seed=1)
+        env.step(0)
+        assert env.render() is None
+        env.close()
+        env = gymnasium.make(name, map=world, render_mode="rgb_array", max_episode_steps=50)
+        env.reset(seed=1)
+        before = env.render()
+        env.step(int(np.flatnonzero(env.unwrapped.action_masks())[0]) if name != GRID else 0)
+        assert before.dtype == np.uint8 and before.ndim == 3 and len(np.unique(before)) > 3
+        assert before.shape == env.render().shape
+        env = gymnasium.make(name, map=world, render_mode="ansi")
+        env.reset(seed=1)
+        assert env.render().count("@" if world == "paper:a" else "visited 1 of 9") == 1
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
         (lambda: gymnasium.make(GRID, map="paper:z"), "no such map"),
+        (lambda: gymnasium.make(GRID, family="tree"), "bad family"),
+        (lambda: gymnasium.make(GRID, family="maze", size=4), "odd"),
+        (lambda: gymnasium.make(GRID, family="maze", map="paper:a"), "got both"),
+        (lambda: gymnasium.make(GRAPH, family="forest"), "forest"),
+        (lambda: gymnasium.make(GRAPH, family="tree", start=0), "bad start"),
+        (lambda: gymnasium.make(GRAPH, family="tree", size=0), "size"),
+        (lambda: gymnasium.make(GRAPH, max_neighbours=2).reset(seed=1), "max_neighbours = 2"),
+        (lambda: gymnasium.make(GRAPH, max_neighbours=0), "max_neighbours"),
+        (lambda: gymnasium.make(GRAPH, observation="sound"), "bad observation"),
+        (lambda: gymnasium.make(FIRST_VISIT, max_visits=1000), "max_visits"),
+        (lambda: gymnasium.make(FIRST_VISIT, budget="much"), "budget"),
+        (lambda: graphdrl.environments.GraphEnv(family="tree").reset(options={"start": 0}), "random worlds"),
+        (lambda: graphdrl.environments.GraphEnv().step(0), "over"),
         (lambda: gymnasium.make(GRID, map=7), "bad map"),
         (lambda: gymnasium.make(GRID, budget=0), "bad budget"),
         (lambda: gymnasium.make(GRID, budget=float("nan")), "bad budget"),

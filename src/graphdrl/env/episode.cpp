@@ -43,7 +43,19 @@ StepResult Episode::step(int action) {
   const bool directions = options_.action_space == ActionSpace::kDirections;
   const NodeId next =
       directions ? world_.direction_target(position_, action) : world_.open_neighbours(position_)[action];
-  const double cost = directions ? 1.0 : world_.open().cost(position_, action);
+  return enter(next, directions ? 1.0 : world_.open().cost(position_, action));
+}
+
+bool Episode::can_stay() const {
+  const double to_end = end_ == kNoNode ? 0 : cost_to_end_[position_];
+  return world_.open().mean_cost() + to_end <= limit_ - spent_;
+}
+
+StepResult Episode::stay() {
+  return enter(position_, world_.open().mean_cost());
+}
+
+StepResult Episode::enter(NodeId next, double cost) {
   const bool blocked = next == position_;
   const std::uint32_t visits_before = visits_[next]++;
   const bool first_visit = visits_before == 0;
@@ -59,7 +71,9 @@ StepResult Episode::step(int action) {
 double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
   const bool first_visit = visits_before == 0;
   const double bonus = first_visit && terminal() ? kFullCoverageBonus : 0.0;
-  if (options_.reward == RewardKind::kCoverageGain) return first_visit ? 1.0 / world_.valid_count() + bonus : 0.0;
+  if (options_.reward == RewardKind::kCoverageGain) {
+    return first_visit && world_.total_prize() > 0 ? world_.prize(position_) / world_.total_prize() + bonus : bonus;
+  }
   if (first_visit) return kFirstVisitReward + bonus;
   if (!blocked) return kRevisitReward * visits_before;
   return kBlockedReward + (options_.punish_blocked_by_visits ? kRevisitReward * visits_before : 0.0);

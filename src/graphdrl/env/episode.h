@@ -12,7 +12,7 @@ namespace graphdrl {
 
 enum class RewardKind {
   kVisitPenalty,  // [paper, eq. 3]
-  kCoverageGain,  // [paper, eq. 2]
+  kCoverageGain,  // [paper, eq. 2]; where there are prizes, their share of all
 };
 
 // The defaults are the paper's.
@@ -50,6 +50,11 @@ class Episode {
   // REQUIRES: !done(), 0 <= action < observation().action_count(), and the action can be paid for.
   StepResult step(int action);
 
+  // Where actions are neighbours, what a blocked direction is on a grid: pays for an edge of mean cost and stays.
+  // REQUIRES: can_stay().
+  StepResult stay();
+  bool can_stay() const;  // what is left pays for it
+
   // The budget is spent, or the state is terminal, or there is nowhere to go, or the walk has kMaxSteps steps. Where
   // the walk must end at a node, it is there.
   bool done() const;
@@ -70,6 +75,7 @@ class Episode {
 
  private:
   bool all_visited() const { return visited_count_ == world_.valid_count(); }
+  StepResult enter(NodeId next, double cost);
   double reward_of(bool blocked, std::uint32_t visits_before) const;
 
   World world_;

@@ -199,8 +199,7 @@ std::string gated_graph_conv(OnnxModel& model, const GraphInputs& graphs, const 
     const OnnxModel::Node s = model.add("Split", {of_state, thirds}, 3).with("axis", std::int64_t{1});
     const std::string r = model.add("Sigmoid", {model.add("Add", {i.name(0), s.name(0)})});
     const std::string z = model.add("Sigmoid", {model.add("Add", {i.name(1), s.name(1)})});
-    const std::string n =
-        model.add("Tanh", {model.add("Add", {i.name(2), model.add("Mul", {r, s.name(2)})})});
+    const std::string n = model.add("Tanh", {model.add("Add", {i.name(2), model.add("Mul", {r, s.name(2)})})});
     // (1 - z) n + z h
     const std::string change = model.add("Mul", {z, model.add("Sub", {h, n})});
     h = model.add("Add", {n, change});

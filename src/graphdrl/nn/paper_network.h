@@ -34,7 +34,7 @@ class PaperParameters : public ParameterBuffer {
   PaperParameters() : ParameterBuffer(specs()) {}
 
   static const std::vector<TensorSpec>& specs();
-  static nlohmann::json description();  // as in policy files
+  static nlohmann::json description();                                                 // as in policy files
   static std::size_t trainable_count() { return graphdrl::trainable_count(specs()); }  // 240,678
 
   using ParameterBuffer::conv;

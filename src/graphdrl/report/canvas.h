@@ -1,6 +1,7 @@
 // What pictures are drawn on: SVG as text, or PNG by way of Cairo.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -62,5 +63,8 @@ std::unique_ptr<Canvas> make_svg_canvas(double width, double height, const std::
 // REQUIRES: at most kMostPngSide a side.
 inline constexpr int kMostPngSide = 32'000;
 std::unique_ptr<Canvas> make_png_canvas(double width, double height);
+
+// What `draw` draws, as pixels. REQUIRES: likewise.
+Bitmap draw_bitmap(double width, double height, const std::function<void(Canvas&)>& draw);
 
 }  // namespace graphdrl

@@ -140,6 +140,10 @@ std::string Picture::png() const {
   return canvas->finish();
 }
 
+Bitmap Picture::pixels() const {
+  return draw_bitmap(width_, height(), [&](Canvas& canvas) { draw(canvas); });
+}
+
 void Picture::draw(Canvas& canvas) const {
   canvas.rectangle({0, 0}, width_, height(), kPaper);
   canvas.text({width_ / 2, 20}, title_, kTextSize + 2, kInk, Anchor::kMiddle);

@@ -24,6 +24,7 @@ class Picture {
   // One that draws the walk as time goes by.
   std::string moving_svg() const;
   std::string png() const;
+  Bitmap pixels() const;
 
  private:
   void place_cells();

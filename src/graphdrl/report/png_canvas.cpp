@@ -120,6 +120,24 @@ class PngCanvas final : public Canvas {
     return bytes;
   }
 
+  Bitmap pixels() const {
+    check();
+    cairo_surface_flush(surface_.get());
+    Bitmap bitmap{.width = cairo_image_surface_get_width(surface_.get()),
+                  .height = cairo_image_surface_get_height(surface_.get()),
+                  .pixels = {}};
+    const unsigned char* const data = cairo_image_surface_get_data(surface_.get());
+    const int stride = cairo_image_surface_get_stride(surface_.get());
+    for (int y = 0; y < bitmap.height; ++y) {
+      const auto* const row = reinterpret_cast<const std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * stride);
+      for (int x = 0; x < bitmap.width; ++x) {
+        const auto part = [&](int shift) { return static_cast<std::uint8_t>(row[x] >> shift & 255U); };
+        bitmap.pixels.push_back({.red = part(16), .green = part(8), .blue = part(0)});
+      }
+    }
+    return bitmap;
+  }
+
  private:
   void set(Colour colour) {
     cairo_set_source_rgb(context_.get(), colour.red / 255.0, colour.green / 255.0, colour.blue / 255.0);
@@ -136,6 +154,12 @@ class PngCanvas final : public Canvas {
 };
 
 }  // namespace
+
+Bitmap draw_bitmap(double width, double height, const std::function<void(Canvas&)>& draw) {
+  PngCanvas canvas(width, height);
+  draw(canvas);
+  return canvas.pixels();
+}
 
 std::unique_ptr<Canvas> make_png_canvas(double width, double height) {
   return std::make_unique<PngCanvas>(width, height);
