@@ -100,6 +100,11 @@ class _Kind:
     def seed(self, index: int, random: np.random.Generator) -> None:
         self.episodes.seed(index, int(random.integers(2**63)))
 
+    def world(self, index: int) -> World:
+        if self.setting.world is not None:
+            return self.setting.world
+        return World(self.episodes.world(index))
+
     def told(self) -> dict[str, NDArray[Any]]:
         """What infos say, of all environments."""
         told = {"visited": self.episodes.visited, "position": self.episodes.positions}
@@ -194,9 +199,7 @@ class _Env(gymnasium.Env[Any, np.int64]):
     @property
     def world(self) -> World:
         """The world of the episode."""
-        if self._kind.setting.world is not None:
-            return self._kind.setting.world
-        return World(self._kind.episodes.world(0))
+        return self._kind.world(0)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         super().reset(seed=seed)
@@ -313,6 +316,10 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
         rewards, terminated, truncated = self._outcome
         return self._observations(), rewards.copy(), terminated.copy(), truncated.copy(), self._infos()
 
+    def world(self, index: int = 0) -> World:
+        """The world of one of the episodes."""
+        return self._kind.world(index)
+
     def action_masks(self) -> NDArray[np.bool_]:
         """Which actions may be taken, [environments, actions]."""
         return self._kind.episodes.action_masks.copy()
@@ -400,13 +407,13 @@ class GraphEnv(_Env):
     eight); the budget left and the nodes visited, as shares. `graph`: spaces.Graph, a row for each node (open, visited,
     current, prize, one legal step away, budget left), edges both ways with their cost in mean edges.
 
-    Reward: `visit_penalty` (eq. 3; a masked action is a blocked move) or `coverage_gain` (eq. 2: the share of all nodes,
-    or of all prizes, that a first visit brings). An episode terminates where nothing can be paid for, or everything is
-    visited: the budget is seen, so that is the process's own end.
+    Reward: `visit_penalty` (eq. 3; a masked action is a blocked move) or `coverage_gain` (eq. 2: the share of all
+    nodes, or of all prizes, that a first visit brings). An episode terminates where nothing can be paid for, or
+    everything is visited: the budget is seen, so that is the process's own end.
 
-    map, family, size, budget, start: as of GridEnv; families of graphs may be `weighted` and `directed`. return_to_start:
-    the walk must end where it began; moves that make that too dear are masked. max_neighbours: A, how many actions there
-    are; by default as many as the map needs, of random graphs size - 1.
+    map, family, size, budget, start: as of GridEnv; families of graphs may be `weighted` and `directed`.
+    return_to_start: the walk must end where it began; moves that make that too dear are masked. max_neighbours: A, how
+    many actions there are; by default as many as the map needs, of random graphs size - 1.
     """
 
     def __init__(
@@ -457,16 +464,17 @@ class GraphVectorEnv(_VectorEnv):
 
 
 class FirstVisitEnv(_Env):
-    """One explorer on any graph, from first visit to first visit: an action walks to an unvisited node next to visited
-    ones, by the cheapest way through visited ground.
+    """One explorer on any graph, from first visit to first visit.
+
+    An action walks to an unvisited node next to visited ones, by the cheapest way through visited ground.
 
     Actions: the `max_visits` nearest first visits, nearest first. Masks and targets as of GraphEnv; masked actions cost
     what they cost there.
 
     Observation `flat`: Box [12 max_visits] of float32 from -16 to 16: of each action 1 where there is one, and what the
-    explorer sees of it (docs/explorer.md, "visit features"). `graph`: spaces.Graph of the nodes around the current one,
-    with what the explorer sees of each, edges both ways with their cost in mean edges; `info["target_rows"]`: the row of
-    each action's target, -1 where there is none.
+    explorer sees of it (docs/explorer.md). `graph`: spaces.Graph of the nodes around the current one, with what the
+    explorer sees of each, edges both ways with their cost in mean edges; `info["target_rows"]`: the row of each
+    action's target, -1 where there is none.
 
     Reward: the sum over the walk of GraphEnv's. An episode terminates where no first visit can be paid for. The options
     are those of GraphEnv.
@@ -526,7 +534,7 @@ class _Window:
         try:
             import pygame
         except ImportError as error:
-            raise gymnasium.error.DependencyNotInstalled("render_mode='human' needs pygame: pip install pygame") from error
+            raise gymnasium.error.DependencyNotInstalled("render_mode='human' needs pygame: install it") from error
         self._pygame = pygame
         pygame.display.init()
         pygame.display.set_caption(title)

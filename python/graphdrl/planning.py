@@ -162,7 +162,8 @@ def plan(
     budget: in units of cost, or a text as "1.1x", a multiple of the nodes; where it is None, that of the world's file.
     start: a node; by default the file's, else the first one that is not blocked. end: a node, "start" or "anywhere";
     by default the file's, else anywhere. policy: a name as of `graphdrl plan --policy`, a `Policy`, or a callable as
-    `evaluate` takes. time_limit: seconds for all of it. seed: of the search. on_progress(visited, bound): called now and then.
+    `evaluate` takes. time_limit: seconds for all of it. seed: of the search. on_progress(visited, bound): called now
+    and then.
 
     Other threads go on meanwhile. Ctrl-C ends it, and every other plan of the process too. Raises Error.
     """
@@ -205,9 +206,9 @@ def evaluate(
 ) -> list[dict[str, Any]]:
     """Compares policies on worlds; rows for `pandas.DataFrame`, coverages in percent, as `graphdrl evaluate --json`.
 
-    A policy is a name, as on the command line, a `Policy`, or a callable of your own: it gets a `State` and gives the number of the
-    node to go to, one of `state.moves`, or None to stop. Every policy has the same starts: each node once with
-    `all_starts`, else the file's or random ones. Raises Error, and what your policy raises.
+    A policy is a name, as on the command line, a `Policy`, or a callable of your own: it gets a `State` and gives the
+    number of the node to go to, one of `state.moves`, or None to stop. Every policy has the same starts: each node once
+    with `all_starts`, else the file's or random ones. Raises Error, and what your policy raises.
     """
     worlds = [worlds] if isinstance(worlds, World) else list(worlds)
     chosen = [policies] if isinstance(policies, (str, Policy)) or callable(policies) else list(policies)

@@ -124,7 +124,8 @@ def test_policies_answer_as_the_program_does(paper, tmp_path):
     policy = paper[0].policy
     world = graphdrl.World.from_file("paper:h")
     walk = [0, 0, 5, 10]
-    shown = run_program("inspect", paper[0].path / "policy.safetensors", "--map", "paper:h", "--walk", "0,0,5,10", "--json")
+    file = paper[0].path / "policy.safetensors"
+    shown = run_program("inspect", file, "--map", "paper:h", "--walk", "0,0,5,10", "--json")
     last = json.loads(shown.stdout)["steps"][-1]
     state = world.state(walk, budget=4)
     np.testing.assert_array_equal(policy.q_values(state), np.float32(last["q"]))
