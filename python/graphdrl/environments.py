@@ -201,6 +201,11 @@ class _Env(gymnasium.Env[Any, np.int64]):
         """The world of the episode."""
         return self._kind.world(0)
 
+    @property
+    def walk(self) -> list[Node]:
+        """Every node of the episode so far, the start first, as the world calls them."""
+        return self.world.names(self._kind.episodes.walk(0))
+
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         super().reset(seed=seed)
         if seed is not None or not self._begun:

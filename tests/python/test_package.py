@@ -353,3 +353,18 @@ def test_errors_say_what_to_change(call, message):
     with pytest.raises(graphdrl.Error, match=message) as caught:
         call()
     assert isinstance(caught.value, ValueError) and "\n" not in str(caught.value)
+
+
+def test_the_notebook_runs(tmp_path, monkeypatch):
+    """Cell by cell; a cell that ends in a plan shows its picture."""
+    monkeypatch.chdir(tmp_path)
+    notebook = json.loads((ROOT / "examples" / "python" / "plan_a_networkx_graph.ipynb").read_text(encoding="utf-8"))
+    cells = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
+    names = {}
+    for cell in cells:
+        source = "".join(cell["source"])
+        if source == "plan":
+            assert names["plan"]._repr_svg_().startswith("<svg")
+            assert any("image/svg+xml" in output.get("data", {}) for output in cell["outputs"])
+        exec(compile(source, "notebook", "exec"), names)
+    assert (tmp_path / "crossings.csv").exists()
