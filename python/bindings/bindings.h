@@ -69,8 +69,8 @@ NodeId checked_node(const World& world, std::int64_t node, std::string_view role
 void run_unlocked(const std::function<void()>& work, const std::function<void()>& listen,
                   const std::function<void()>& stop);
 
-// The same for planning, whose reports go to on_progress(visited, bound) where it is not None. A stop is one of all
-// planning of the process.
+// The same for planning, whose reports go to on_progress(visited, bound) where it is not None. A stop ends this
+// planning and no other.
 void run_planning(const nb::object& on_progress, const std::function<void(const Report&)>& work);
 
 // What a policy is shown: an episode under way, for one call of the policy; or the state after a walk, which lasts.

@@ -129,7 +129,7 @@ void run_unlocked(const std::function<void()>& work, const std::function<void()>
 void run_planning(const nb::object& on_progress, const std::function<void(const Report&)>& work) {
   std::mutex mutex;
   std::optional<PlanProgress> news;
-  bool stopped = false;
+  std::atomic<bool> stopped = false;
   Report report;
   if (!on_progress.is_none()) {
     report = [&](const PlanProgress& progress) {
@@ -143,17 +143,11 @@ void run_planning(const nb::object& on_progress, const std::function<void(const 
     lock.unlock();
     if (told) on_progress(told->visited, told->bound);
   };
-  struct Reset {
-    const bool& stopped;
-    ~Reset() {
-      if (stopped) stop_planning(false);
-    }
-  } reset{stopped};
-  run_unlocked([&] { work(report); }, listen,
-               [&] {
-                 stopped = true;
-                 stop_planning();
-               });
+  const auto work_until_stopped = [&] {
+    const StopScope scope(stopped);
+    work(report);
+  };
+  run_unlocked(work_until_stopped, listen, [&] { stopped = true; });
 }
 
 void bind_callbacks(nb::module_& module) {

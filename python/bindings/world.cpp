@@ -2,6 +2,7 @@
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
+#include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/report/picture.h"
@@ -33,56 +34,25 @@ World grid(std::string name, const InArray<bool, nb::ndim<2>>& blocked, bool dia
   return World(std::move(name), std::move(map));
 }
 
-void require_length(std::size_t length, std::size_t nodes, const char* what) {
-  if (length == 0 || length == nodes) return;
-  throw Error(
-      {.what = std::string("bad length of ") + what, .expected = std::to_string(nodes), .got = std::to_string(length)});
-}
-
 World graph(std::string name, std::int64_t node_count, const InArray<std::int64_t, nb::shape<-1, 2>>& edges,
             const InArray<double, nb::ndim<1>>& costs, bool directed, const InArray<bool, nb::ndim<1>>& blocked,
             std::vector<std::string> labels, const InArray<double, nb::ndim<1>>& prizes,
             const InArray<double, nb::shape<-1, 2>>& places, const std::string& unit, const GivenState& given) {
-  if (node_count < 1 || node_count > 1'000'000'000) {
-    throw Error({.what = "bad number of nodes", .expected = "1 to 1000000000", .got = std::to_string(node_count)});
-  }
-  const auto n = static_cast<std::size_t>(node_count);
-  require_length(costs.size(), edges.shape(0), "costs");
-  require_length(blocked.size(), n, "blocked");
-  require_length(labels.size(), n, "labels");
-  require_length(prizes.size(), n, "prizes");
-  require_length(places.size() / 2, n, "places");
-  std::vector<Edge> list;
-  list.reserve(edges.shape(0));
-  for (std::size_t i = 0; i < edges.shape(0); ++i) {
-    const std::int64_t a = edges.data()[2 * i];
-    const std::int64_t b = edges.data()[2 * i + 1];
-    if (std::min(a, b) < 0 || std::max(a, b) >= node_count) {
-      throw Error({.what = "an edge outside the graph",
-                   .expected = "nodes from 0 to " + std::to_string(node_count - 1),
-                   .got = std::to_string(a) + ", " + std::to_string(b)});
-    }
-    list.push_back({static_cast<NodeId>(a), static_cast<NodeId>(b), costs.size() > 0 ? costs.data()[i] : 1.0});
-  }
-  for (const double prize : values_of<double>(prizes)) {
-    if (!std::isfinite(prize) || prize < 0) {
-      throw Error({.what = "bad prize", .expected = "a number from 0 up", .got = std::to_string(prize)});
-    }
-  }
-  Places points{.points = {}, .unit = unit};
-  for (std::size_t i = 0; i < places.size() / 2; ++i) {
-    points.points.push_back({places.data()[2 * i], places.data()[2 * i + 1]});
-    if (!std::isfinite(points.points.back().x) || !std::isfinite(points.points.back().y)) {
-      throw Error({.what = "bad coordinates of node " + std::to_string(i), .expected = "finite numbers"});
-    }
-  }
-  const auto count = static_cast<NodeId>(node_count);
-  Graph made = Graph::from_edges(count, list, directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
   const auto& [budget, start, end] = given;
-  return World(std::move(name), std::move(made),
-               blocked.size() > 0 ? std::vector<bool>(blocked.data(), blocked.data() + n) : std::vector<bool>(n),
-               std::move(labels), {prizes.data(), prizes.data() + prizes.size()},
-               {.budget = budget, .start = start, .end = end}, std::move(points));
+  GraphArrays arrays{.name = std::move(name),
+                     .node_count = node_count,
+                     .edges = {edges.data(), edges.size()},
+                     .costs = {costs.data(), costs.size()},
+                     .directed = directed,
+                     .blocked = {blocked.data(), blocked.data() + blocked.size()},
+                     .labels = std::move(labels),
+                     .prizes = {prizes.data(), prizes.data() + prizes.size()},
+                     .places = {.points = {}, .unit = unit},
+                     .given = {.budget = budget, .start = start, .end = end}};
+  for (std::size_t i = 0; i < places.size() / 2; ++i) {
+    arrays.places.points.push_back({places.data()[2 * i], places.data()[2 * i + 1]});
+  }
+  return world_of(std::move(arrays));
 }
 
 World from_file(const std::string& path, const std::string& cost_attribute, int cell_pixels, bool unknown_is_free,

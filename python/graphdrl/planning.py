@@ -165,7 +165,7 @@ def plan(
     `evaluate` takes. time_limit: seconds for all of it. seed: of the search. on_progress(visited, bound): called now
     and then.
 
-    Other threads go on meanwhile. Ctrl-C ends it, and every other plan of the process too. Raises Error.
+    Other threads go on meanwhile, with plans of their own. Ctrl-C ends it. Raises Error.
     """
     core = _require_world(world)._core
     if budget is None:

@@ -10,6 +10,7 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -29,6 +30,7 @@ struct Pool {
 int thread_count = 1;
 std::optional<Pool> pool;  // where thread_count > 1
 thread_local bool within_task = false;
+thread_local const void* context = nullptr;
 
 // ThreadSanitizer does not see how libtbb.so orders a loop's begin before its tasks and these before its end. Each
 // order has a mark of its own: with one for both, the end of a task would order the next one behind it and hide their
@@ -56,6 +58,7 @@ class Loop {
   void run(int i) {
     begin_.after();
     within_task = true;
+    const void* const before = std::exchange(context, context_);
     try {
       run_(task_, i);
     } catch (...) {
@@ -65,6 +68,7 @@ class Loop {
         failed_ = i;
       }
     }
+    context = before;
     within_task = false;
     end_.before();
   }
@@ -88,6 +92,7 @@ class Loop {
 
   void (*run_)(const void*, int);
   const void* task_;
+  const void* context_ = context;
   OrderMark begin_;
   OrderMark end_;
   std::mutex mutex_;
@@ -115,6 +120,10 @@ namespace detail {
 
 bool in_task() {
   return within_task;
+}
+
+const void*& task_context() {
+  return context;
 }
 
 void run_on_pool(int count, void (*run)(const void* task, int i), const void* task, Schedule schedule) {

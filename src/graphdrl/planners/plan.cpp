@@ -1,6 +1,8 @@
 #include "graphdrl/planners/plan.h"
 
-#include <atomic>
+#include <utility>
+
+#include "graphdrl/base/parallel.h"
 
 namespace graphdrl {
 namespace {
@@ -10,12 +12,19 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes i
 
 }  // namespace
 
-void stop_planning(bool stop) {
-  stopped = stop;
+void stop_planning() {
+  stopped = true;
+}
+
+StopScope::StopScope(const std::atomic<bool>& stop) : before_(std::exchange(detail::task_context(), &stop)) {}
+
+StopScope::~StopScope() {
+  detail::task_context() = before_;
 }
 
 bool planning_stopped() {
-  return stopped.load(std::memory_order_relaxed);
+  const auto* const flag = static_cast<const std::atomic<bool>*>(detail::task_context());
+  return stopped.load(std::memory_order_relaxed) || (flag != nullptr && flag->load(std::memory_order_relaxed));
 }
 
 Deadline deadline_after(TimeLimit limit) {

@@ -1,6 +1,7 @@
 // Planners, which think out a whole walk before its first step is taken, and the plans they make.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <limits>
@@ -19,9 +20,23 @@ using TimeLimit = std::optional<std::chrono::duration<double>>;
 
 Deadline deadline_after(TimeLimit limit);
 
-// Asks every planner to end now, as if its deadline had passed, and those that begin later, until it is taken back. A
-// signal handler may.
-void stop_planning(bool stop = true);
+// Asks every planner of the process to end now, as if its deadline had passed, and those that begin later. A signal
+// handler may.
+void stop_planning();
+
+// Within its scope, planners on this thread, and in the tasks of its parallel loops, end when a flag becomes true, as
+// if their deadlines had passed. The flag must outlive the scope.
+class StopScope {
+ public:
+  explicit StopScope(const std::atomic<bool>& stop);
+  StopScope(const StopScope&) = delete;
+  ~StopScope();
+
+ private:
+  const void* before_;
+};
+
+// Whether one of these asks the caller's thread to end.
 bool planning_stopped();
 
 inline bool passed(Deadline deadline) {
