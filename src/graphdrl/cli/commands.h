@@ -7,6 +7,7 @@ namespace graphdrl {
 
 void add_bench_command(CLI::App& app);
 void add_check_command(CLI::App& app);
+void add_completion_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_inspect_command(CLI::App& app);

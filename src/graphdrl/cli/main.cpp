@@ -16,5 +16,6 @@ int main(int argc, char** argv) {
   graphdrl::add_export_command(app);
   graphdrl::add_maps_command(app);
   graphdrl::add_bench_command(app);
+  graphdrl::add_completion_command(app);
   return graphdrl::run_program(app, argc, argv);
 }

@@ -169,40 +169,61 @@ void refuse_beside_resume(const std::vector<CLI::Option*>& options, const std::s
   }
 }
 
+// The parser of the arguments after `train`, and what they say.
+class TrainProgram {
+ public:
+  explicit TrainProgram(MakePaperLearner make_learner)
+      : make_learner_(std::move(make_learner)), flags_(app_, command_.given) {
+    app_.add_option("--out", command_.out, "The run directory, new (default: runs/PRESET)")
+        ->type_name("RUN")
+        ->check(not_empty());
+    of_new_runs_ = app_.get_options([](CLI::Option* option) { return option->get_name() != "--help"; });
+    resume_ = app_.add_option("--resume", command_.resume, "Go on with a run; takes none of the options above")
+                  ->type_name("RUN")
+                  ->check(not_empty());
+    app_.add_flag("--json", command_.json, "Print one JSON document when done");
+    add_threads_option(app_);
+    app_.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
+    app_.config_formatter(std::make_shared<ConfigReader>());
+    app_.allow_config_extras(CLI::config_extras_mode::error);
+    app_.callback([this] { run(); });
+  }
+  TrainProgram(const TrainProgram&) = delete;
+
+  CLI::App& app() { return app_; }
+
+ private:
+  void run() {
+    if (resume_->count() > 0) {
+      refuse_beside_resume(of_new_runs_, command_.resume);
+      return train(*Trainer::resume(RunDirectory(command_.resume), make_learner_), command_.json);
+    }
+    const TrainOptions options = flags_.resolve();
+    const RunDirectory run(command_.out.empty() ? "runs/" + options.preset : command_.out);
+    train(*Trainer::start(options, run, make_learner_), command_.json);
+  }
+
+  MakePaperLearner make_learner_;
+  CLI::App app_{
+      "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
+      "graphdrl train"};
+  TrainCommand command_;
+  OptionFlags flags_;
+  std::vector<CLI::Option*> of_new_runs_;
+  const CLI::Option* resume_ = nullptr;
+};
+
 }  // namespace
 
 int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner) {
-  CLI::App app{
-      "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
-      "graphdrl train"};
-  TrainCommand command;
-  const OptionFlags flags(app, command.given);
-  app.add_option("--out", command.out, "The run directory, new (default: runs/PRESET)")
-      ->type_name("RUN")
-      ->check(not_empty());
-  const std::vector<CLI::Option*> of_new_runs =
-      app.get_options([](CLI::Option* option) { return option->get_name() != "--help"; });
-  const CLI::Option* const resume =
-      app.add_option("--resume", command.resume, "Go on with a run; takes none of the options above")
-          ->type_name("RUN")
-          ->check(not_empty());
-  app.add_flag("--json", command.json, "Print one JSON document when done");
-  add_threads_option(app);
-  app.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
-  app.config_formatter(std::make_shared<ConfigReader>());
-  app.allow_config_extras(CLI::config_extras_mode::error);
-  app.callback([&] {
-    if (resume->count() > 0) {
-      refuse_beside_resume(of_new_runs, command.resume);
-      return train(*Trainer::resume(RunDirectory(command.resume), make_learner), command.json);
-    }
-    const TrainOptions options = flags.resolve();
-    const RunDirectory run(command.out.empty() ? "runs/" + options.preset : command.out);
-    train(*Trainer::start(options, run, make_learner), command.json);
-  });
+  TrainProgram program(make_learner);
   std::vector<const char*> argv = {"graphdrl train"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
-  return run_program(app, static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
+  return run_program(program.app(), static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
+}
+
+void visit_train_options(const std::function<void(const CLI::App&)>& visit) {
+  visit(TrainProgram(make_paper_cpu_learner).app());
 }
 
 }  // namespace graphdrl

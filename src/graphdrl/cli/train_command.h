@@ -1,6 +1,8 @@
 // `graphdrl train`, as both programs run it.
 #pragma once
 
+#include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,5 +13,8 @@ namespace graphdrl {
 // Trains as the arguments after `train` say; gives the exit status. `make_learner`: for the devices that the program
 // knows.
 int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner);
+
+// Shows the table of its options, for manuals and completions.
+void visit_train_options(const std::function<void(const CLI::App&)>& visit);
 
 }  // namespace graphdrl

@@ -1,0 +1,250 @@
+// GraphDRL in C++17: plans walks that visit as many nodes of a graph as a budget allows, and bounds them.
+//
+//   const auto world = graphdrl::World::from_edges({{0, 1, 2.5}, {1, 2, 1.0}});
+//   const auto plan = graphdrl::plan(world, graphdrl::Task(10));
+//   for (const int node : plan.walk()) …
+//
+// Over the C interface [graphdrl_c.h], so that it does not matter which compiler built the library. Everything that
+// fails throws graphdrl::Error. Worlds and plans are handles: copies share one, and any number of threads may use it.
+#ifndef GRAPHDRL_GRAPHDRL_H
+#define GRAPHDRL_GRAPHDRL_H
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "graphdrl/graphdrl_c.h"
+
+namespace graphdrl {
+inline namespace v0 {
+
+// Its text is one line. bad_input(): an argument or a file that cannot be, rather than memory that ran out.
+class Error : public std::runtime_error {
+ public:
+  Error(graphdrl_status status, const std::string& text) : std::runtime_error(text), status_(status) {}
+  bool bad_input() const { return status_ == GRAPHDRL_BAD_INPUT; }
+
+ private:
+  graphdrl_status status_;
+};
+
+namespace detail {
+
+inline void check(graphdrl_status status) {
+  if (status != GRAPHDRL_DONE) throw Error(status, graphdrl_last_error());
+}
+
+}  // namespace detail
+
+inline std::string version() {
+  return graphdrl_version();
+}
+
+// How many threads one call may use; 1 at first. Results do not depend on it.
+inline void set_threads(int count) {
+  detail::check(graphdrl_set_threads(count));
+}
+
+struct Edge {
+  std::int32_t from;
+  std::int32_t to;
+  double cost = 1;
+};
+
+// What else a graph may have. Vectors are empty, or have a value per node.
+struct GraphOptions {
+  std::int32_t node_count = -1;  // -1: one more than the largest node of an edge
+  bool directed = false;
+  std::vector<unsigned char> blocked = {};  // other than 0 where nobody may go
+  std::vector<double> prizes = {};          // of first visits; 1 each where there are none
+  std::string name = "graph";
+};
+
+// A graph with its blocked nodes and prizes.
+class World {
+ public:
+  static World from_edges(const std::vector<Edge>& edges, const GraphOptions& options = {}) {
+    std::vector<std::int32_t> ends;
+    std::vector<double> costs;
+    std::int32_t nodes = 0;
+    for (const Edge& edge : edges) {
+      ends.push_back(edge.from);
+      ends.push_back(edge.to);
+      costs.push_back(edge.cost);
+      for (const std::int32_t node : {edge.from, edge.to}) nodes = node >= nodes ? node + 1 : nodes;
+    }
+    if (options.node_count >= 0) nodes = options.node_count;
+    require_length(options.blocked.size(), nodes, "blocked");
+    require_length(options.prizes.size(), nodes, "prizes");
+    graphdrl_world* world = nullptr;
+    detail::check(graphdrl_world_from_edges(options.name.c_str(), nodes, edges.size(), ends.data(), costs.data(),
+                                            options.directed ? 1 : 0,
+                                            options.blocked.empty() ? nullptr : options.blocked.data(),
+                                            options.prizes.empty() ? nullptr : options.prizes.data(), &world));
+    return World(world);
+  }
+
+  // blocked: [rows * columns], row by row from the top.
+  static World from_grid(std::int32_t rows, std::int32_t columns, const std::vector<unsigned char>& blocked,
+                         bool diagonals = false, const std::string& name = "grid") {
+    if (rows > 0 && columns > 0) require_length(blocked.size(), std::int64_t{rows} * columns, "cells", false);
+    graphdrl_world* world = nullptr;
+    detail::check(graphdrl_world_from_grid(name.c_str(), rows, columns, blocked.data(), diagonals ? 1 : 0, &world));
+    return World(world);
+  }
+
+  // A file in any format that the program reads, or "paper:a" to "paper:j".
+  static World from_file(const std::string& path) {
+    graphdrl_world* world = nullptr;
+    detail::check(graphdrl_world_from_file(path.c_str(), &world));
+    return World(world);
+  }
+
+  std::string name() const { return graphdrl_world_name(get()); }
+  std::int32_t node_count() const { return graphdrl_world_node_count(get()); }    // blocked ones included
+  std::int32_t valid_count() const { return graphdrl_world_valid_count(get()); }  // those that are not
+  // What the file calls a node; its number where it has no names.
+  std::string label(std::int32_t node) const {
+    const char* const label = graphdrl_world_label(get(), node);
+    return label != nullptr ? label : std::to_string(node);
+  }
+  // The node of a label, of "row,column" on a grid or of "#number"; -1 where there is no such valid node.
+  std::int32_t find(const std::string& label) const { return graphdrl_world_find(get(), label.c_str()); }
+
+  const graphdrl_world* get() const { return handle_.get(); }
+
+ private:
+  explicit World(graphdrl_world* world) : handle_(world, graphdrl_free) {}
+
+  static void require_length(std::size_t length, std::int64_t expected, const char* what, bool or_empty = true) {
+    if ((or_empty && length == 0) || static_cast<std::int64_t>(length) == expected) return;
+    throw Error(GRAPHDRL_BAD_INPUT, std::string("bad length of ") + what + ": expected " + std::to_string(expected) +
+                                        ", got " + std::to_string(length));
+  }
+
+  std::shared_ptr<graphdrl_world> handle_;
+};
+
+// What is asked: Task(25).from(3).back_to_start().within(0.5).
+class Task {
+ public:
+  // What the file says.
+  Task() { graphdrl_task_init(&task_); }
+  // A budget in units of cost.
+  explicit Task(double budget) : Task() { task_.budget = budget; }
+  // So many times the valid nodes, in edges of mean cost: 1.1 is the command line's 1.1x.
+  static Task relative(double multiple) {
+    Task task;
+    task.task_.relative = multiple;
+    return task;
+  }
+
+  Task& from(std::int32_t start) { return set(task_.start, start); }
+  Task& to(std::int32_t end) { return set(task_.end, end); }
+  Task& to_anywhere() { return set(task_.end, GRAPHDRL_ANYWHERE); }
+  Task& back_to_start() { return set(task_.end, GRAPHDRL_AT_START); }
+  Task& within(double seconds) { return set(task_.time_limit_s, seconds); }
+  Task& seed(std::uint64_t seed) { return set(task_.seed, seed); }
+  // As of `graphdrl plan --policy`.
+  Task& policy(std::string name) {
+    policy_ = std::move(name);
+    return *this;
+  }
+  // Called now and then, on the thread that plans. False ends the planning; what it throws comes out of plan().
+  Task& progress(std::function<bool(std::int32_t visited, double bound)> told) {
+    progress_ = std::move(told);
+    return *this;
+  }
+
+ private:
+  friend class Plan;
+  friend double upper_bound(const World& world, const Task& task);
+
+  struct Call {
+    const Task& task;
+    std::exception_ptr thrown;
+  };
+
+  template <typename T, typename Value>
+  Task& set(T& field, Value value) {
+    field = static_cast<T>(value);
+    return *this;
+  }
+
+  // The task as C takes it; holds as long as this and `call`.
+  graphdrl_task for_call(Call& call) const {
+    graphdrl_task task = task_;
+    if (!policy_.empty()) task.policy = policy_.c_str();
+    if (progress_) {
+      task.progress_data = &call;
+      task.progress = [](std::int32_t visited, double bound, void* data) -> std::int32_t {
+        Call& mine = *static_cast<Call*>(data);
+        try {
+          if (!mine.thrown && mine.task.progress_(visited, bound)) return 0;
+        } catch (...) {
+          mine.thrown = std::current_exception();
+        }
+        return 1;
+      };
+    }
+    return task;
+  }
+
+  graphdrl_task task_;
+  std::string policy_;
+  std::function<bool(std::int32_t, double)> progress_;
+};
+
+// One walk, and how far from the best it may be. It may outlive the world.
+class Plan {
+ public:
+  Plan(const World& world, const Task& task) {
+    Task::Call call{task, nullptr};
+    const graphdrl_task asked = task.for_call(call);
+    graphdrl_result* result = nullptr;
+    const graphdrl_status status = graphdrl_plan(world.get(), &asked, &result);
+    handle_.reset(result, graphdrl_free);
+    if (call.thrown) std::rethrow_exception(call.thrown);
+    detail::check(status);
+  }
+
+  // Every step, the start first.
+  std::vector<std::int32_t> walk() const {
+    std::size_t length = 0;
+    const std::int32_t* const nodes = graphdrl_result_walk(handle_.get(), &length);
+    return {nodes, nodes + length};
+  }
+  std::int32_t visited() const { return graphdrl_result_visited(handle_.get()); }  // valid nodes
+  double prize() const { return graphdrl_result_prize(handle_.get()); }
+  double cost() const { return graphdrl_result_cost(handle_.get()); }
+  double budget() const { return graphdrl_result_budget(handle_.get()); }       // in units of cost
+  double bound() const { return graphdrl_result_bound(handle_.get()); }         // no walk has a higher prize
+  bool optimal() const { return graphdrl_result_optimal(handle_.get()) != 0; }  // whether that is proved of this one
+  std::string json() const { return graphdrl_result_json(handle_.get()); }      // as `graphdrl plan --json`
+  // In the format of the ending, as `graphdrl plan --out`.
+  void save(const std::string& path) const { detail::check(graphdrl_result_save(handle_.get(), path.c_str())); }
+
+ private:
+  std::shared_ptr<graphdrl_result> handle_;
+};
+
+inline Plan plan(const World& world, const Task& task) {
+  return Plan(world, task);
+}
+
+// What no walk's prize exceeds: nodes, where there are no prizes.
+inline double upper_bound(const World& world, const Task& task) {
+  Task::Call call{task, nullptr};
+  const graphdrl_task asked = task.for_call(call);
+  double bound = 0;
+  detail::check(graphdrl_upper_bound(world.get(), &asked, &bound));
+  return bound;
+}
+
+}  // namespace v0
+}  // namespace graphdrl
+
+#endif  // GRAPHDRL_GRAPHDRL_H

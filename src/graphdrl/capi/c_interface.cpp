@@ -1,0 +1,301 @@
+// The C interface: handles around worlds and plans, and no exception past its edge.
+#include <graphdrl/graphdrl_c.h>
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/env/budget.h"
+#include "graphdrl/env/graph_arrays.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/planners/bound.h"
+#include "graphdrl/report/plan_files.h"
+
+namespace graphdrl {
+
+// What graphdrl_free() is given.
+class Handle {
+ public:
+  Handle() = default;
+  Handle(const Handle&) = delete;
+  virtual ~Handle() = default;
+};
+
+namespace {
+
+thread_local std::string last_error;
+
+// Does the work, and turns what it throws into a status.
+template <typename Work>
+graphdrl_status guarded(const Work& work) noexcept {
+  const auto failed = [](graphdrl_status status, const char* text) noexcept {
+    try {
+      last_error = text;
+    } catch (...) {
+      last_error.clear();
+    }
+    return status;
+  };
+  try {
+    work();
+    return GRAPHDRL_DONE;
+  } catch (const Error& error) {
+    return failed(GRAPHDRL_BAD_INPUT, error.what());
+  } catch (const std::bad_alloc&) {
+    return failed(GRAPHDRL_FAILED, "out of memory");
+  } catch (const std::exception& error) {
+    return failed(GRAPHDRL_FAILED, error.what());
+  } catch (...) {
+    return failed(GRAPHDRL_FAILED, "an unknown failure");
+  }
+}
+
+void require(const void* pointer, const char* what) {
+  if (pointer == nullptr) throw Error({.what = std::string(what) + " is NULL"});
+}
+
+NodeId checked(const World& world, std::int32_t node, const char* role) {
+  const bool there = node >= 0 && node < world.node_count();
+  if (there && !world.is_blocked(node)) return node;
+  throw Error({.what = std::string(role) + (there ? " on an obstacle" : " outside the map"),
+               .expected = "a valid node",
+               .got = std::to_string(node),
+               .where = world.name()});
+}
+
+double budget_of(const World& world, const graphdrl_task& task) {
+  if (task.relative > 0) return Budget::parse(std::to_string(task.relative) + "x").cost_in(world);
+  if (task.budget >= 0) return checked_budget(world, task.budget);
+  if (world.given().budget && !std::isnan(task.budget)) return *world.given().budget;
+  throw Error({.what = "no budget is given", .where = world.name()});
+}
+
+Task task_of(const World& world, const graphdrl_task& task) {
+  if (task.size < sizeof(graphdrl_task))
+    throw Error({.what = "bad size of a task", .expected = "graphdrl_task_init()"});
+  const GivenTask& given = world.given();
+  NodeId start = given.start == kNoNode ? world.valid_nodes().front() : given.start;
+  if (task.start != GRAPHDRL_GIVEN) start = checked(world, task.start, "start");
+  NodeId end = kNoNode;
+  switch (task.end) {
+    case GRAPHDRL_GIVEN:
+      end = given.end;
+      break;
+    case GRAPHDRL_ANYWHERE:
+      break;
+    case GRAPHDRL_AT_START:
+      end = start;
+      break;
+    default:
+      end = checked(world, task.end, "end");
+  }
+  return {.view = world, .start = start, .budget = budget_of(world, task), .end = end};
+}
+
+// Tells the caller how far the planning is, until he has it stopped.
+Report progress_of(const graphdrl_task& task, std::atomic<bool>& stopped) {
+  if (task.progress == nullptr) return {};
+  return [&](const PlanProgress& news) {
+    if (!stopped && task.progress(news.visited, news.bound, task.progress_data) != 0) stopped = true;
+  };
+}
+
+}  // namespace
+}  // namespace graphdrl
+
+struct graphdrl_world final : graphdrl::Handle {
+  explicit graphdrl_world(graphdrl::World made) : world(std::move(made)) {}
+  graphdrl::World world;
+};
+
+struct graphdrl_result final : graphdrl::Handle {
+  explicit graphdrl_result(graphdrl::PlanReport made) : report(std::move(made)) {}
+  graphdrl::PlanReport report;
+  mutable std::once_flag json_made;
+  mutable std::string json;
+};
+
+using namespace graphdrl;
+
+const char* graphdrl_version() {
+  return GRAPHDRL_VERSION;
+}
+
+const char* graphdrl_last_error() {
+  return last_error.c_str();
+}
+
+void graphdrl_free(void* handle) {
+  delete static_cast<Handle*>(handle);
+}
+
+graphdrl_status graphdrl_set_threads(int32_t count) {
+  return guarded([&] {
+    if (count < 1 || count > 1024) {
+      throw Error({.what = "bad number of threads", .expected = "1 to 1024", .got = std::to_string(count)});
+    }
+    set_threads(count);
+  });
+}
+
+graphdrl_status graphdrl_world_from_edges(const char* name, int32_t node_count, size_t edge_count, const int32_t* edges,
+                                          const double* costs, int32_t directed, const unsigned char* blocked,
+                                          const double* prizes, graphdrl_world** world) {
+  return guarded([&] {
+    require(world, "the place for a world");
+    *world = nullptr;
+    if (edge_count > 0) require(edges, "the array of edges");
+    const std::size_t nodes = node_count > 0 ? static_cast<std::size_t>(node_count) : 0;
+    const std::vector<std::int64_t> ends(edges, edges + 2 * edge_count);
+    GraphArrays arrays{.name = name != nullptr ? name : "graph",
+                       .node_count = node_count,
+                       .edges = ends,
+                       .costs = {costs, costs != nullptr ? edge_count : 0},
+                       .directed = directed != 0};
+    if (blocked != nullptr) arrays.blocked.assign(blocked, blocked + nodes);
+    if (prizes != nullptr) arrays.prizes.assign(prizes, prizes + nodes);
+    *world = new graphdrl_world(world_of(std::move(arrays)));
+  });
+}
+
+graphdrl_status graphdrl_world_from_grid(const char* name, int32_t rows, int32_t columns, const unsigned char* blocked,
+                                         int32_t diagonals, graphdrl_world** world) {
+  return guarded([&] {
+    require(world, "the place for a world");
+    *world = nullptr;
+    require(blocked, "the array of cells");
+    const std::int64_t cells = std::int64_t{rows} * columns;
+    if (rows < 1 || columns < 1 || cells > 1'000'000'000) {
+      throw Error({.what = "bad size of a grid",
+                   .expected = "1 to 1000000000 cells",
+                   .got = std::to_string(rows) + " by " + std::to_string(columns)});
+    }
+    GridMap map{.rows = rows, .cols = columns, .blocked = {}, .diagonals = diagonals != 0};
+    map.blocked.assign(blocked, blocked + cells);
+    *world = new graphdrl_world(World(name != nullptr ? name : "grid", std::move(map)));
+  });
+}
+
+graphdrl_status graphdrl_world_from_file(const char* path, graphdrl_world** world) {
+  return guarded([&] {
+    require(world, "the place for a world");
+    *world = nullptr;
+    require(path, "the path");
+    *world = new graphdrl_world(load_one_world(path));
+  });
+}
+
+const char* graphdrl_world_name(const graphdrl_world* world) {
+  return world != nullptr ? world->world.name().c_str() : "";
+}
+
+int32_t graphdrl_world_node_count(const graphdrl_world* world) {
+  return world != nullptr ? world->world.node_count() : 0;
+}
+
+int32_t graphdrl_world_valid_count(const graphdrl_world* world) {
+  return world != nullptr ? world->world.valid_count() : 0;
+}
+
+const char* graphdrl_world_label(const graphdrl_world* world, int32_t node) {
+  if (world == nullptr || node < 0 || node >= world->world.node_count()) return nullptr;
+  const std::vector<std::string>& labels = world->world.labels();
+  return labels.empty() ? nullptr : labels[static_cast<std::size_t>(node)].c_str();
+}
+
+int32_t graphdrl_world_find(const graphdrl_world* world, const char* label) {
+  NodeId node = kNoNode;
+  if (world != nullptr && label != nullptr) guarded([&] { node = parse_node(world->world, label, "node"); });
+  return node;
+}
+
+void graphdrl_task_init(graphdrl_task* task) {
+  if (task == nullptr) return;
+  *task = {.size = sizeof(graphdrl_task),
+           .budget = -1,
+           .relative = 0,
+           .start = GRAPHDRL_GIVEN,
+           .end = GRAPHDRL_GIVEN,
+           .policy = nullptr,
+           .time_limit_s = -1,
+           .seed = 1,
+           .progress = nullptr,
+           .progress_data = nullptr};
+}
+
+graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* task, graphdrl_result** result) {
+  return guarded([&] {
+    require(result, "the place for a result");
+    *result = nullptr;
+    require(world, "the world");
+    require(task, "the task");
+    const Task asked = task_of(world->world, *task);
+    check(asked);
+    PlanRequest request{.policy = task->policy != nullptr ? task->policy : "search", .seed = task->seed};
+    if (!(task->time_limit_s < 0)) request.time_limit_s = task->time_limit_s;
+    std::atomic<bool> stopped = false;
+    const StopScope scope(stopped);
+    *result = new graphdrl_result(make_plan(world->world, asked, request, progress_of(*task, stopped)));
+  });
+}
+
+graphdrl_status graphdrl_upper_bound(const graphdrl_world* world, const graphdrl_task* task, double* bound) {
+  return guarded([&] {
+    require(bound, "the place for a bound");
+    require(world, "the world");
+    require(task, "the task");
+    const double seconds = task->time_limit_s;
+    if (!(seconds <= 1e6)) throw Error({.what = "bad time limit", .expected = "at most 1000000 seconds"});
+    const Task asked = task_of(world->world, *task);
+    check(asked);
+    *bound = max_prize(asked, deadline_after(seconds < 0 ? std::nullopt : TimeLimit(seconds)));
+  });
+}
+
+const int32_t* graphdrl_result_walk(const graphdrl_result* result, size_t* length) {
+  if (length != nullptr) *length = result != nullptr ? result->report.plan.walk.size() : 0;
+  return result != nullptr ? result->report.plan.walk.data() : nullptr;
+}
+
+int32_t graphdrl_result_visited(const graphdrl_result* result) {
+  return result != nullptr ? result->report.plan.visited : 0;
+}
+
+double graphdrl_result_prize(const graphdrl_result* result) {
+  return result != nullptr ? result->report.plan.prize : 0;
+}
+
+double graphdrl_result_cost(const graphdrl_result* result) {
+  return result != nullptr ? result->report.plan.cost : 0;
+}
+
+double graphdrl_result_budget(const graphdrl_result* result) {
+  return result != nullptr ? result->report.task.budget : 0;
+}
+
+double graphdrl_result_bound(const graphdrl_result* result) {
+  return result != nullptr ? result->report.plan.bound : 0;
+}
+
+int32_t graphdrl_result_optimal(const graphdrl_result* result) {
+  return result != nullptr && result->report.plan.optimal ? 1 : 0;
+}
+
+const char* graphdrl_result_json(const graphdrl_result* result) {
+  if (result == nullptr) return "";
+  const graphdrl_status made =
+      guarded([&] { std::call_once(result->json_made, [&] { result->json = plan_json(result->report).dump(); }); });
+  return made == GRAPHDRL_DONE ? result->json.c_str() : "";
+}
+
+graphdrl_status graphdrl_result_save(const graphdrl_result* result, const char* path) {
+  return guarded([&] {
+    require(result, "the result");
+    require(path, "the path");
+    check_plan_file(result->report.world, path);
+    write_plan(result->report, path);
+  });
+}
