@@ -17,6 +17,8 @@ NodeId checked_node(const World& world, std::int64_t node, std::string_view role
 }
 
 NB_MODULE(_core, module) {
+  // What globals and cycles still hold when Python ends is no leak to tell a user of.
+  nb::set_leak_warnings(false);
   module.doc() = "The extension behind the package graphdrl.";
   module.attr("__version__") = GRAPHDRL_VERSION;
   nb::exception<Error>(module, "Error", PyExc_ValueError).doc() =

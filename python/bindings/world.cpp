@@ -44,7 +44,7 @@ World graph(std::string name, std::int64_t node_count, const InArray<std::int64_
                      .edges = {edges.data(), edges.size()},
                      .costs = {costs.data(), costs.size()},
                      .directed = directed,
-                     .blocked = {blocked.data(), blocked.data() + blocked.size()},
+                     .blocked = std::vector<bool>(blocked.data(), blocked.data() + blocked.size()),
                      .labels = std::move(labels),
                      .prizes = {prizes.data(), prizes.data() + prizes.size()},
                      .places = {.points = {}, .unit = unit},

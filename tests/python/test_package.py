@@ -1,5 +1,6 @@
 """The Python package, beside the program and beside networkx."""
 
+import concurrent.futures
 import copy
 import json
 import os
@@ -211,9 +212,14 @@ def test_memory_stays_flat_and_plans_outlive_worlds():
             if i % 100 == 0:
                 pickle.loads(pickle.dumps(plan))
 
-    some(2000)
+    def some_on_four_threads(count):
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            for done in [pool.submit(some, count // 4) for _ in range(4)]:
+                done.result()
+
+    some_on_four_threads(4000)
     before = resident()
-    some(20_000)
+    some_on_four_threads(100_000)
     assert resident() - before < 4 << 20
 
 
