@@ -142,7 +142,7 @@ class Explorer {
 class QNetwork {
  public:
   explicit QNetwork(PaperParameters parameters) : parameters_(parameters), policy_(std::move(parameters)) {}
-  explicit QNetwork(const Tensors& tensors) : QNetwork(from_tensors<PaperParameters>(tensors)) {}
+  QNetwork(const Tensors& tensors, const std::string& wall) : QNetwork(described(tensors, wall)) {}
 
   const PaperParameters& parameters() const { return parameters_; }
 
@@ -168,6 +168,12 @@ class QNetwork {
   }
 
  private:
+  static PaperParameters described(const Tensors& tensors, const std::string& wall) {
+    PaperParameters parameters = from_tensors<PaperParameters>(tensors);
+    parameters.set_wall(parse_paper_wall(wall));
+    return parameters;
+  }
+
   static std::vector<Observation> observations_of(const std::vector<const State*>& states) {
     std::vector<Observation> observations;
     for (const State* const state : states) observations.push_back(state->get());
@@ -188,8 +194,7 @@ nb::class_<Network> bind_network(nb::module_& module, const char* name) {
     tensors.append(nb::make_tuple(spec.name, nb::tuple(shape), spec.trainable));
   }
   nb::class_<Network> network(module, name);
-  network.def(nb::init<const Tensors&>(), nb::arg("tensors"))
-      .def_prop_ro("tensors", [](const Network& self) { return tensors_of(self.parameters(), Parameters::specs()); })
+  network.def_prop_ro("tensors", [](const Network& self) { return tensors_of(self.parameters(), Parameters::specs()); })
       .def("save", [](const Network& self, const std::string& path) { write_policy_file(path, self.parameters()); })
       .def("export_onnx", [](const Network& self, const std::string& path) { write_onnx(path, self.parameters()); })
       .def("inputs", &Network::inputs, nb::arg("states"));
@@ -224,10 +229,13 @@ std::unique_ptr<Policy> OwnPolicy::as_policy() const {
 
 void bind_policies(nb::module_& module) {
   bind_network<Explorer, ExplorerParameters>(module, "Explorer")
+      .def(nb::init<const Tensors&>(), nb::arg("tensors"))
       .def_static("builtin", [] { return std::make_unique<Explorer>(builtin_explorer()); })
       .def_static("read", [](const std::string& path) { return std::make_unique<Explorer>(read_explorer_file(path)); })
       .def("first_visits", &Explorer::first_visits, nb::arg("state"));
   bind_network<QNetwork, PaperParameters>(module, "PaperNetwork")
+      .def(nb::init<const Tensors&, const std::string&>(), nb::arg("tensors"), nb::arg("wall"))
+      .def_prop_ro("wall", [](const QNetwork& self) { return std::string(name_of(self.parameters().wall())); })
       .def_static("read", [](const std::string& path) { return std::make_unique<QNetwork>(read_policy_file(path)); })
       .def_static("random",
                   [](std::uint64_t seed) {

@@ -43,10 +43,16 @@ class Policy:
         """
         if type(self) is Policy:
             raise TypeError("a Policy is an Explorer or a PaperNetwork: Policy.load() finds out which")
-        names = [spec[0] for spec in self._kind.specs]
+        self._core = self._kind(self._arrays(tensors))
+        self.name = name or type(self).__name__
+
+    @classmethod
+    def _arrays(cls, tensors: Mapping[str, ArrayLike]) -> list[NDArray[np.float32]]:
+        """In the order of the network's tensors."""
+        names = [spec[0] for spec in cls._kind.specs]
         strange = sorted(set(map(str, tensors)) ^ set(names))
         if strange:
-            raise Error(f"bad tensors: expected those of {type(self).__name__}, got or missed {strange[0]!r}")
+            raise Error(f"bad tensors: expected those of {cls.__name__}, got or missed {strange[0]!r}")
         arrays = []
         for key in names:
             try:
@@ -54,8 +60,7 @@ class Policy:
             except (TypeError, ValueError) as error:
                 raise Error(f"bad tensor {key!r}: expected numbers, got {shown(tensors[key])}") from error
         # ascontiguousarray turns a scalar into an array, which no shape here is.
-        self._core = self._kind(arrays)
-        self.name = name or type(self).__name__
+        return arrays
 
     @classmethod
     def _of(cls, core: Any, name: str) -> Self:
@@ -130,6 +135,23 @@ class PaperNetwork(Policy):
 
     __slots__ = ()
     _kind = _core.PaperNetwork
+
+    def __init__(self, tensors: Mapping[str, ArrayLike], name: str | None = None, wall: str = "border") -> None:
+        """As of any Policy. `wall` says which cells the network sees as wall, and must be as in its training.
+
+        `border`: the first and last rows and columns. `zero_or_nine`: rows and columns 0 and 9, whatever the map's
+        size, as in the code of the paper's author. Raises Error on another.
+        """
+        self._core = self._kind(self._arrays(tensors), str(wall))
+        self.name = name or type(self).__name__
+
+    @property
+    def wall(self) -> str:
+        """Which cells the network sees as wall: `border` or `zero_or_nine`."""
+        return self._core.wall
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.tensors, self.name, self.wall)
 
     @classmethod
     def random(cls, seed: int = 0) -> PaperNetwork:

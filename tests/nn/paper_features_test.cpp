@@ -35,6 +35,68 @@ TEST(Features, AreThePapersSevenOnASmallGrid) {
   EXPECT_EQ(features_of(episode), expected);
 }
 
+// The nodes with the feature wall, one row of the map per line.
+std::string walls_of(const World& world, PaperWall wall) {
+  const PaperFeatureEncoder encoder(world, wall);
+  std::vector<float> features(static_cast<std::size_t>(world.node_count()) * kPaperFeatureCount);
+  encoder.begin(0, features);
+  std::string text;
+  for (NodeId node = 0; node < world.node_count(); ++node) {
+    const Cell cell = world.map()->cell(node);
+    const std::size_t row = static_cast<std::size_t>(node) * kPaperFeatureCount;
+    const float value = features[row + static_cast<std::size_t>(PaperFeature::kWall)];
+    EXPECT_TRUE(value == 0 || value == 1);
+    text += value == 1 ? 'w' : '.';
+    if (cell.col + 1 == world.map()->cols) text += '\n';
+  }
+  return text;
+}
+
+World open_world(int rows, int cols) {
+  std::string map;
+  for (int row = 0; row < rows; ++row) map += std::string(static_cast<std::size_t>(cols), '.') + '\n';
+  return grid_world(map);
+}
+
+TEST(Features, WallIsTheBorderOfTheMap) {
+  EXPECT_EQ(walls_of(open_world(5, 5), PaperWall::kBorder),
+            "wwwww\n"
+            "w...w\n"
+            "w...w\n"
+            "w...w\n"
+            "wwwww\n");
+  EXPECT_EQ(walls_of(open_world(3, 11), PaperWall::kBorder),
+            "wwwwwwwwwww\n"
+            "w.........w\n"
+            "wwwwwwwwwww\n");
+}
+
+TEST(Features, WallOfTheAuthorsCodeIsRowsAndColumns0And9) {
+  EXPECT_EQ(walls_of(open_world(5, 5), PaperWall::kZeroOrNine),
+            "wwwww\n"
+            "w....\n"
+            "w....\n"
+            "w....\n"
+            "w....\n");
+  EXPECT_EQ(walls_of(open_world(3, 11), PaperWall::kZeroOrNine),
+            "wwwwwwwwwww\n"
+            "w........w.\n"
+            "w........w.\n");
+  EXPECT_EQ(walls_of(open_world(11, 3), PaperWall::kZeroOrNine),
+            "www\n"
+            "w..\nw..\nw..\nw..\nw..\nw..\nw..\nw..\n"
+            "www\n"
+            "w..\n");
+  // On 10×10 the two are one.
+  const World ten = open_world(10, 10);
+  const std::string inner = "w........w\n";
+  std::string expected = "wwwwwwwwww\n";
+  for (int row = 1; row < 9; ++row) expected += inner;
+  expected += "wwwwwwwwww\n";
+  EXPECT_EQ(walls_of(ten, PaperWall::kZeroOrNine), expected);
+  EXPECT_EQ(walls_of(ten, PaperWall::kBorder), expected);
+}
+
 TEST(Features, KeptUpToDateAreThoseFromScratch) {
   Rng rng(11);
   for (int round = 0; round < 200; ++round) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "graphdrl/io/file.h"
@@ -88,6 +89,32 @@ TEST(PolicyFile, RoundTripsAndHoldsNoOtherTensor) {
   const Safetensors file = Safetensors::read(folder / "p.safetensors");
   EXPECT_EQ(file.entries().size(), 27u);
   EXPECT_EQ(file.get<float>("conv1.rnn.weight_ih", {21, 7}).size(), 147u);
+}
+
+TEST(PolicyFile, SaysWhichWallItsNetworkSees) {
+  const TemporaryFolder folder;
+  PaperParameters parameters = some_parameters();
+  // A file without the key, as all were before there was one, is of the border.
+  write_policy_file(folder / "border", parameters);
+  EXPECT_FALSE(policy_description(Safetensors::read(folder / "border")).contains("wall"));
+  EXPECT_EQ(read_policy_file(folder / "border").wall(), PaperWall::kBorder);
+
+  parameters.set_wall(PaperWall::kZeroOrNine);
+  write_policy_file(folder / "author", parameters);
+  EXPECT_EQ(policy_description(Safetensors::read(folder / "author"))["wall"], "zero_or_nine");
+  EXPECT_EQ(read_policy_file(folder / "author").wall(), PaperWall::kZeroOrNine);
+
+  nlohmann::json description = parameters.description();
+  const auto described = [&](const nlohmann::json& wall) {
+    description["wall"] = wall;
+    write_safetensors(folder / "own", parameters.views(), {{"network", description.dump()}});
+    return error_of([&] { EXPECT_EQ(read_policy_file(folder / "own").wall(), PaperWall::kBorder); });
+  };
+  EXPECT_EQ(described("border"), "");
+  EXPECT_THAT(described("edge"),
+              HasSubstr("own: unknown kind of the feature 'wall': expected border or zero_or_nine, got 'edge'"));
+  EXPECT_THAT(described(9), HasSubstr("got '9'"));
+  EXPECT_THAT(described("a\nb"), HasSubstr("got 'a\\x0ab'"));
 }
 
 TEST(PolicyFile, IsRefusedWhenItIsAnothersOrDamaged) {

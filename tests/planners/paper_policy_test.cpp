@@ -30,6 +30,33 @@ TEST(PaperPolicy, TakesTheDirectionOfTheHighestQValueEvenWhereItIsBlocked) {
   EXPECT_DOUBLE_EQ(results[1].coverage, 0.5);
 }
 
+TEST(PaperPolicy, SeesTheWallThatItsParametersSay) {
+  const World world = grid_world("..\n..\n");
+  const NodeId last = 3;  // row 1 and column 1: the border, but neither 0 nor 9
+  for (const PaperWall wall : {PaperWall::kBorder, PaperWall::kZeroOrNine}) {
+    Rng rng(5);
+    PaperParameters parameters(rng);
+    parameters.set_wall(wall);
+    PaperNetwork network;
+    network.set_parameters(parameters);
+    Episode episode(world, {.budget = 2});
+    episode.reset(0);
+
+    std::vector<float> x(static_cast<std::size_t>(world.node_count()) * kPaperFeatureCount);
+    PaperFeatureEncoder(world, PaperWall::kBorder).begin(0, x);
+    x[last * kPaperFeatureCount + static_cast<int>(PaperFeature::kWall)] = wall == PaperWall::kBorder ? 1.0f : 0.0f;
+    GraphBatch batch;
+    batch.add(world.graph());
+    std::array<float, kActionCount> expected{};
+    network.q_values(batch, x, expected);
+
+    std::array<float, kActionCount> q{};
+    const Observation now = episode.observation();
+    PaperPolicy(parameters).q_values({&now, 1}, q);
+    EXPECT_EQ(q, expected);
+  }
+}
+
 TEST(Registry, MakesPoliciesByNameAndFile) {
   const TemporaryFolder folder;
   Rng rng(1);

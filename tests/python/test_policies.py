@@ -190,6 +190,47 @@ def test_bad_tensors(change, message):
     assert "\n" not in str(error.value)
 
 
+def test_the_wall_that_a_network_sees(tmp_path):
+    """It stays with the network, whatever way that goes, and every user of the network sees it."""
+    tensors = graphdrl.PaperNetwork.random(5).tensors
+    border, author = (graphdrl.PaperNetwork(tensors, wall=wall) for wall in ("border", "zero_or_nine"))
+    assert graphdrl.PaperNetwork(tensors).wall == border.wall == "border"
+    world = graphdrl.World.from_file("paper:h")
+    state = world.state([0, 5], budget=4)
+    rows, columns = np.indices((5, 5))
+    first = (rows == 0) | (columns == 0)
+    seen = {network.wall: network.inputs(state)["x"][:, 4].reshape(5, 5) for network in (border, author)}
+    np.testing.assert_array_equal(seen["border"], first | (rows == 4) | (columns == 4))
+    np.testing.assert_array_equal(seen["zero_or_nine"], first)
+    assert not np.array_equal(border.q_values(state), author.q_values(state))
+
+    file = tmp_path / "author.safetensors"
+    author.save(file)
+    for again in (graphdrl.Policy.load(file), pickle.loads(pickle.dumps(author)), copy.copy(author)):
+        assert again.wall == "zero_or_nine"
+        np.testing.assert_array_equal(again.q_values(state), author.q_values(state))
+    shown = run_program("inspect", file, "--map", "paper:h", "--walk", "0,5", "--json")
+    last = json.loads(shown.stdout)["steps"][-1]
+    np.testing.assert_array_equal(np.float32(last["q"]), author.q_values(state))
+    np.testing.assert_array_equal(np.float32(last["features"]), author.inputs(state)["x"])
+    for policy in (border, author):
+        policy.save(file)
+        shown = run_program("evaluate", "--policy", file, "--maps", "paper:h", "--all-starts", "--json")
+        row = graphdrl.evaluate(world, policy, 25, all_starts=True)[0]
+        assert json.loads(shown.stdout)["rows"][0]["mean"] == row["mean"]
+        assert graphdrl.plan(world, 25, policy=str(file)).walk == graphdrl.plan(world, 25, policy=policy).walk
+
+    for wall in ("edge", "", None, 9):
+        with pytest.raises(graphdrl.Error, match="'wall': expected border or zero_or_nine, got ") as error:
+            graphdrl.PaperNetwork(tensors, wall=wall)
+        assert "\n" not in str(error.value)
+    for network, described in ((border, {}), (author, {"wall": "zero_or_nine"})):
+        network.export_onnx(tmp_path / "m.onnx")
+        session = pytest.importorskip("onnxruntime").InferenceSession(tmp_path / "m.onnx")
+        description = json.loads(session.get_modelmeta().custom_metadata_map["network"])
+        assert {key: value for key, value in description.items() if key == "wall"} == described
+
+
 def test_states_of_bad_walks():
     world = graphdrl.World.from_file("paper:a")
     for walk, budget in (([], 5), ([(0, 0), (4, 4)], 5), ([99], 5), ([(0, 0), (0, 1), (0, 2)], 1), ([(0, 0)], "x")):

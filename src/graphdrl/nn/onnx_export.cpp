@@ -210,7 +210,7 @@ std::string gated_graph_conv(OnnxModel& model, const GraphInputs& graphs, const 
 }  // namespace
 
 void write_onnx(const std::filesystem::path& path, const PaperParameters& parameters) {
-  OnnxModel model(PaperParameters::description());
+  OnnxModel model(parameters.description());
   model.add_tensors(parameters.views());
   std::string x = model.input("x", onnx::TensorProto::FLOAT, {"N", kConvShapes[0].inputs});
   const GraphInputs graphs = add_graph_inputs(model);

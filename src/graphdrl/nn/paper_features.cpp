@@ -1,5 +1,8 @@
 #include "graphdrl/nn/paper_features.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
@@ -11,9 +14,29 @@ float& at(std::span<float> matrix, NodeId node, PaperFeature feature) {
   return matrix[static_cast<std::size_t>(node) * kPaperFeatureCount + static_cast<std::size_t>(feature)];
 }
 
+bool is_wall(PaperWall wall, const GridMap& map, Cell cell) {
+  const Cell last = wall == PaperWall::kBorder ? Cell{map.rows - 1, map.cols - 1} : Cell{9, 9};
+  return cell.row == 0 || cell.col == 0 || cell.row == last.row || cell.col == last.col;
+}
+
 }  // namespace
 
-PaperFeatureEncoder::PaperFeatureEncoder(const View& view) : view_(view) {
+std::string_view name_of(PaperWall wall) {
+  return kPaperWallNames[static_cast<std::size_t>(wall)];
+}
+
+PaperWall parse_paper_wall(std::string_view name, const std::string& source) {
+  const auto* const found = std::find(kPaperWallNames.begin(), kPaperWallNames.end(), name);
+  if (found == kPaperWallNames.end()) {
+    throw Error({.what = "unknown kind of the feature 'wall'",
+                 .expected = fmt::format("{}", fmt::join(kPaperWallNames, " or ")),
+                 .got = in_quotes(name),
+                 .where = source});
+  }
+  return static_cast<PaperWall>(found - kPaperWallNames.begin());
+}
+
+PaperFeatureEncoder::PaperFeatureEncoder(const View& view, PaperWall wall) : view_(view) {
   if (!view.is_grid()) {
     throw Error({.what = "the paper's features need a grid map", .where = view.name()});
   }
@@ -21,11 +44,10 @@ PaperFeatureEncoder::PaperFeatureEncoder(const View& view) : view_(view) {
   untouched_.resize(static_cast<std::size_t>(view.node_count()) * kPaperFeatureCount);
   for (NodeId node = 0; node < view.node_count(); ++node) {
     const Cell cell = map.cell(node);
-    const bool wall = cell.row == 0 || cell.col == 0 || cell.row == map.rows - 1 || cell.col == map.cols - 1;
     at(untouched_, node, PaperFeature::kX) = static_cast<float>(cell.row);
     at(untouched_, node, PaperFeature::kY) = static_cast<float>(cell.col);
     at(untouched_, node, PaperFeature::kObstacle) = view.is_blocked(node) ? 1.0f : 0.0f;
-    at(untouched_, node, PaperFeature::kWall) = wall ? 1.0f : 0.0f;
+    at(untouched_, node, PaperFeature::kWall) = is_wall(wall, map, cell) ? 1.0f : 0.0f;
     at(untouched_, node, PaperFeature::kUnvisitedNeighbours) = static_cast<float>(view.graph().degree(node));
   }
 }

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/nn/vector_math.h"
 
 namespace graphdrl {
 namespace {
+
+constexpr const char* kWallKey = "wall";
 
 std::vector<TensorSpec> paper_specs() {
   TensorList list;
@@ -27,6 +28,30 @@ std::vector<TensorSpec> paper_specs() {
     list.add(fmt::format("bn{}.running_var", layer + 1), {kConvShapes[layer].width}, 0, /*trainable=*/false);
   }
   return std::move(list).specs();
+}
+
+// Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
+nlohmann::json network_description() {
+  nlohmann::json layers = nlohmann::json::array();
+  for (const auto [inputs, width, steps, elu] : kConvShapes) {
+    layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
+  }
+  layers.push_back({{"type", "linear"}, {"inputs", kFc1Shape.inputs}, {"width", kHiddenWidth}});
+  layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
+  return {{"kind", "paper"},
+          {"features", kPaperFeatureNames},
+          {"actions", kDirectionNames},
+          {"layers", layers},
+          {"activation", "elu"},
+          {"batch_norm", {{"epsilon", kBatchNormEpsilon}, {"momentum", kBatchNormMomentum}}},
+          {"pooling", "sum"}};
+}
+
+PaperWall described_wall(const Safetensors& file) {
+  const nlohmann::json description = policy_description(file);
+  const auto wall = description.find(kWallKey);
+  if (wall == description.end()) return PaperWall::kBorder;
+  return parse_paper_wall(wall->is_string() ? wall->get<std::string>() : wall->dump(), file.source());
 }
 
 }  // namespace
@@ -53,31 +78,22 @@ GatedGraphConvTensors<const float> PaperParameters::conv(int layer) const {
   return conv(fmt::format("conv{}", layer));
 }
 
-// Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
-nlohmann::json PaperParameters::description() {
-  nlohmann::json layers = nlohmann::json::array();
-  for (const auto [inputs, width, steps, elu] : kConvShapes) {
-    layers.push_back({{"type", "gated_graph_conv"}, {"inputs", inputs}, {"width", width}, {"steps", steps}});
-  }
-  layers.push_back({{"type", "linear"}, {"inputs", kFc1Shape.inputs}, {"width", kHiddenWidth}});
-  layers.push_back({{"type", "linear"}, {"inputs", kHiddenWidth}, {"width", kActionCount}});
-  return {{"kind", "paper"},
-          {"features", kPaperFeatureNames},
-          {"actions", kDirectionNames},
-          {"layers", layers},
-          {"activation", "elu"},
-          {"batch_norm", {{"epsilon", kBatchNormEpsilon}, {"momentum", kBatchNormMomentum}}},
-          {"pooling", "sum"}};
+nlohmann::json PaperParameters::description() const {
+  nlohmann::json description = network_description();
+  if (wall_ != PaperWall::kBorder) description[kWallKey] = name_of(wall_);
+  return description;
 }
 
 void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters) {
-  write_policy_file(path, parameters, PaperParameters::description());
+  write_policy_file(path, parameters, parameters.description());
 }
 
 PaperParameters read_policy_file(const std::filesystem::path& path) {
   const Safetensors file = Safetensors::read(path);
-  require_description(file, PaperParameters::description(), PaperParameters::specs());
-  return PaperParameters::from_file(file);
+  require_description(file, network_description(), PaperParameters::specs());
+  PaperParameters parameters = PaperParameters::from_file(file);
+  parameters.set_wall(described_wall(file));
+  return parameters;
 }
 
 PaperNetwork::PaperNetwork() {

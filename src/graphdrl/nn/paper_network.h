@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "graphdrl/nn/graph_batch.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/nn/parameters.h"
 
 namespace graphdrl {
@@ -34,8 +35,13 @@ class PaperParameters : public ParameterBuffer {
   PaperParameters() : ParameterBuffer(specs()) {}
 
   static const std::vector<TensorSpec>& specs();
-  static nlohmann::json description();                                                 // as in policy files
   static std::size_t trainable_count() { return graphdrl::trainable_count(specs()); }  // 240,678
+
+  // How the network's input is computed.
+  PaperWall wall() const { return wall_; }
+  void set_wall(PaperWall wall) { wall_ = wall; }
+  // The network, as policy files describe it. The key "wall" is there only where it is not the border.
+  nlohmann::json description() const;
 
   using ParameterBuffer::conv;
   GatedGraphConvTensors<float> conv(int layer);  // layer: 1 to 3
@@ -47,6 +53,8 @@ class PaperParameters : public ParameterBuffer {
 
  private:
   explicit PaperParameters(ParameterBuffer buffer) : ParameterBuffer(std::move(buffer)) {}
+
+  PaperWall wall_ = PaperWall::kBorder;
 };
 
 // Policy files of this network. Throw Error.

@@ -16,7 +16,7 @@ PaperPolicy::PaperPolicy(PaperParameters parameters) : parameters_(std::move(par
 }
 
 const PaperFeatureEncoder& PaperPolicy::encoder_for(const View& view) {
-  if (!encoder_ || !(encoder_->view() == view)) encoder_.emplace(view);
+  if (!encoder_ || !(encoder_->view() == view)) encoder_.emplace(view, parameters_.wall());
   return *encoder_;
 }
 
