@@ -25,6 +25,14 @@ TEST(Median, IsTheMiddleOne) {
   EXPECT_EQ(median({5}), 5);
 }
 
+TEST(Quantile, LiesBetweenTheSortedValues) {
+  EXPECT_EQ(quantile({4, 1, 3, 2}, 0), 1);
+  EXPECT_EQ(quantile({4, 1, 3, 2}, 0.5), 2.5);
+  EXPECT_EQ(quantile({4, 1, 3, 2}, 0.25), 1.75);  // three quarters of the way from 1 to 2
+  EXPECT_EQ(quantile({4, 1, 3, 2}, 1), 4);
+  EXPECT_EQ(quantile({5}, 0.7), 5);
+}
+
 TEST(Summarise, HasNoSpreadForOneValue) {
   const Summary summary = summarise(std::vector<double>{5});
   EXPECT_EQ(summary.mean, 5);

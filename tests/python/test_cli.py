@@ -340,6 +340,13 @@ def bad_inputs(tmp_path, policy):
         ([*evaluate_nearest, "--budget", "1e12"], "bad budget"),
         ([*evaluate_nearest, "--\x1b[31m"], "\\x1b[31m"),
         (["train", "--resume", ""], "--resume"),
+        (["train", "--seeds", "2-1"], "--seeds: bad seeds"),
+        (["train", "--seeds", "1-2", "--seed", "3"], "--seed excludes --seeds"),
+        (["train", "--maps", "no-map", "--seeds", "1-2", "--out", tmp_path / "new"], "no such map"),
+        (["results", tmp_path / "nothing"], "cannot read the file"),
+        (["results", policy.parent, "--figure", "curves.gif"], "FILE.svg or FILE.png"),
+        (["results", policy.parent, "--into", tmp_path / "nothing.md"], "cannot read the file"),
+        (["results"], "runs is required"),
         (["train", "--out", ""], "--out"),
         (["train", "--start", "3", "--out", tmp_path / "new"], "start on an obstacle"),
         (["train", "--seed", "-1", "--out", tmp_path / "new"], "--seed: expected a whole number"),
@@ -446,6 +453,51 @@ def test_interrupted_training_goes_on_where_it_was(run, trained, tmp_path, numbe
     assert json.loads(resumed.stdout)["episodes"] == 25
     assert (folder / "policy.safetensors").read_bytes() == (whole / "policy.safetensors").read_bytes()
     assert (folder / "metrics.jsonl").read_bytes() == (whole / "metrics.jsonl").read_bytes()
+
+
+def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
+    training = ["train", "--preset", "paper", "--episodes", "10"]
+    process = run("graphdrl", *training, "--seeds", "1-2,5", "--out", "all", "--threads", "2", "--json", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    runs = json.loads(process.stdout)["runs"]
+    assert [one["seed"] for one in runs] == [1, 2, 5]
+    assert [one["run"] for one in runs] == ["all/seed-1", "all/seed-2", "all/seed-5"]
+    assert all(one["episodes"] == 10 and one["steps"] == 250 for one in runs)
+    assert "3 of 3 seeds done" in process.stderr
+    assert run("graphdrl", *training, "--seed", "5", "--out", "alone", cwd=tmp_path).returncode == 0
+    for name in ("policy.safetensors", "metrics.jsonl"):
+        assert (tmp_path / "alone" / name).read_bytes() == (tmp_path / "all/seed-5" / name).read_bytes()
+
+    (tmp_path / "page.md").write_text("before\n<!-- table -->\nold\n<!-- end of table -->\nafter\n")
+    process = run("graphdrl", "results", "all", "--figure", "curves.svg", "--into", "page.md", "--json", cwd=tmp_path)
+    assert process.returncode == 0, process.stderr
+    result = json.loads(process.stdout)
+    assert result["seeds"] == [1, 2, 5] and [row["map"] for row in result["rows"]][-2:] == ["unseen", "all"]
+    page = (tmp_path / "page.md").read_text()
+    assert page.startswith("before\n<!-- table -->\n| map |") and page.endswith("<!-- end of table -->\nafter\n")
+    assert "old" not in page and page.count("\n| paper:") == 10
+    assert "The mean of 3 seeds" in (tmp_path / "curves.svg").read_text()
+    text = run("graphdrl", "results", "all/seed-1", "all/seed-2", "--maps", "paper:a", cwd=tmp_path).stdout
+    assert text.startswith("Over 2 seeds") and "paper:a" in text
+
+
+def test_a_kill_in_the_middle_of_many_seeds_changes_nothing(run, tmp_path):
+    training = ["train", "--preset", "paper", "--episodes", "12", "--seeds", "3-4"]
+    assert run("graphdrl", *training, "--out", tmp_path / "whole").returncode == 0
+    command = [BIN / "graphdrl", *training, "--out", tmp_path / "killed"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    first = tmp_path / "killed" / "seed-3" / "metrics.jsonl"
+    while process.poll() is None and not (first.exists() and first.read_text()):
+        time.sleep(0.05)
+    process.kill()
+    process.communicate(timeout=60)
+    resumed = run("graphdrl", "train", "--resume", tmp_path / "killed", "--json")
+    assert resumed.returncode == 0, resumed.stderr
+    assert [one["episodes"] for one in json.loads(resumed.stdout)["runs"]] == [12, 12]
+    for seed in (3, 4):
+        for name in ("policy.safetensors", "metrics.jsonl"):
+            whole = tmp_path / "whole" / f"seed-{seed}" / name
+            assert (tmp_path / "killed" / f"seed-{seed}" / name).read_bytes() == whole.read_bytes()
 
 
 def loaded_libraries(program):

@@ -14,6 +14,7 @@ void add_inspect_command(CLI::App& app);
 void add_maps_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_report_command(CLI::App& app);
+void add_results_command(CLI::App& app);
 void add_train_command(CLI::App& app);
 
 }  // namespace graphdrl

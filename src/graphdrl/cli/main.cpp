@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   graphdrl::add_plan_command(app);
   graphdrl::add_check_command(app);
   graphdrl::add_report_command(app);
+  graphdrl::add_results_command(app);
   graphdrl::add_inspect_command(app);
   graphdrl::add_export_command(app);
   graphdrl::add_maps_command(app);

@@ -14,6 +14,7 @@
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/options.h"
+#include "graphdrl/train/seed_runs.h"
 #include "graphdrl/train/trainer.h"
 
 namespace graphdrl {
@@ -59,6 +60,7 @@ class ConfigReader : public CLI::ConfigTOML {
 
 struct TrainCommand {
   TrainOptions given;  // by flags and config files; else the default of the explorer, or of the paper's own options
+  std::string seeds;
   std::string out;
   std::string resume;
   bool json = false;
@@ -127,6 +129,21 @@ class OptionFlags {
   std::vector<std::function<void(TrainOptions&)>> copies_;  // of what was given
 };
 
+// Says how to go on, and ends with the signal's status.
+[[noreturn]] void leave_stopped(const std::string& what, const std::string& run) {
+  print_diagnostic(
+      fmt::format("Stopped after {}; everything is saved. To go on:\n  graphdrl train --resume {}\n", what, run));
+  throw CLI::RuntimeError(128 + stop_signal);
+}
+
+Json report_of(const RunDirectory& run, const TrainingProgress& progress, const Recipe::Units& units) {
+  return {{"run", run.path().string()},
+          {units.name + 's', progress.done},
+          {units.samples, progress.samples},
+          {"elapsed_s", progress.elapsed_s},
+          {"policy", run.policy().string()}};
+}
+
 // Trains to the end, or until a signal comes.
 void train(Trainer& trainer, bool json) {
   const std::string run = trainer.run_directory().path().string();
@@ -140,23 +157,40 @@ void train(Trainer& trainer, bool json) {
                                       display.show(progress.done, units.count, news.status, last);
                                     });
   display.finish();
-  if (!finished) {
-    print_diagnostic(
-        fmt::format("Stopped after {} of {} {}s; everything is saved. To go on:\n  graphdrl train --resume {}\n",
-                    progress.done, units.count, units.name, run));
-    throw CLI::RuntimeError(128 + stop_signal);
+  if (!finished) leave_stopped(fmt::format("{} of {} {}s", progress.done, units.count, units.name), run);
+  if (json) return print_json(report_of(trainer.run_directory(), progress, units));
+  print_text(fmt::format("Trained {} {}s, {} {}, in {:.0f} s. The policy: {}\n", progress.done, units.name,
+                         progress.samples, units.samples, progress.elapsed_s,
+                         trainer.run_directory().policy().string()));
+}
+
+// The same of many seeds.
+void train(SeedRuns& runs, bool json) {
+  const Recipe::Units& units = runs.units();
+  std::int64_t before = 0;
+  for (const std::uint64_t seed : runs.seeds()) before += runs.progress(seed).done;
+  catch_signals();
+  ProgressDisplay display(stderr, units.name, before);
+  const std::size_t seeds = runs.seeds().size();
+  int seeds_done = 0;
+  const bool finished = runs.run([] { return stop_signal != 0; },
+                                 [&](const SeedRunsNews& news) {
+                                   seeds_done = news.seeds_done;
+                                   const std::string status =
+                                       fmt::format("{} of {} seeds done  {:.0f} {}/s", seeds_done, seeds,
+                                                   news.samples_per_s, units.samples);
+                                   display.show(news.units_done, news.units, status, news.units_done == news.units);
+                                 });
+  display.finish();
+  if (!finished) leave_stopped(fmt::format("{} of {} seeds", seeds_done, seeds), runs.folder().string());
+  Json reports = Json::array();
+  for (const std::uint64_t seed : runs.seeds()) {
+    reports.push_back({{"seed", seed}});
+    reports.back().update(report_of(runs.run_directory(seed), runs.progress(seed), units));
   }
-  const std::string policy = trainer.run_directory().policy().string();
-  if (json) {
-    print_json({{"run", run},
-                {units.name + 's', progress.done},
-                {units.samples, progress.samples},
-                {"elapsed_s", progress.elapsed_s},
-                {"policy", policy}});
-  } else {
-    print_text(fmt::format("Trained {} {}s, {} {}, in {:.0f} s. The policy: {}\n", progress.done, units.name,
-                           progress.samples, units.samples, progress.elapsed_s, policy));
-  }
+  if (json) return print_json({{"runs", reports}});
+  print_text(fmt::format("Trained {} seeds, {} {}s each. The runs: {} to {}\n", seeds, units.count, units.name,
+                         reports.front()["run"].get<std::string>(), reports.back()["run"].get<std::string>()));
 }
 
 // Throws Error where an option of a new run stands beside --resume.
@@ -174,6 +208,13 @@ class TrainProgram {
  public:
   explicit TrainProgram(MakePaperLearner make_learner)
       : make_learner_(std::move(make_learner)), flags_(app_, command_.given) {
+    app_.add_option(
+            "--seeds", command_.seeds,
+            "Independent runs of many seeds, as 1-8 or 1,4,7-9, one a thread: each in RUN/seed-N, with the bytes "
+            "that it would have alone")
+        ->type_name("SEEDS")
+        ->check(not_empty())
+        ->excludes("--seed");
     app_.add_option("--out", command_.out, "The run directory, new (default: runs/PRESET)")
         ->type_name("RUN")
         ->check(not_empty());
@@ -196,11 +237,19 @@ class TrainProgram {
   void run() {
     if (resume_->count() > 0) {
       refuse_beside_resume(of_new_runs_, command_.resume);
+      if (SeedRuns::are_in(command_.resume)) {
+        SeedRuns runs = SeedRuns::resume(command_.resume, make_learner_);
+        return train(runs, command_.json);
+      }
       return train(*Trainer::resume(RunDirectory(command_.resume), make_learner_), command_.json);
     }
     const TrainOptions options = flags_.resolve();
-    const RunDirectory run(command_.out.empty() ? "runs/" + options.preset : command_.out);
-    train(*Trainer::start(options, run, make_learner_), command_.json);
+    const std::string out = command_.out.empty() ? "runs/" + options.preset : command_.out;
+    if (!command_.seeds.empty()) {
+      SeedRuns runs = SeedRuns::start(options, parse_seeds(command_.seeds), out, make_learner_);
+      return train(runs, command_.json);
+    }
+    train(*Trainer::start(options, RunDirectory(out), make_learner_), command_.json);
   }
 
   MakePaperLearner make_learner_;

@@ -27,4 +27,8 @@ Summary summarise(std::span<const double> values);
 // The upper one of the two in the middle where their number is even. REQUIRES: values is not empty.
 double median(std::vector<double> values);
 
+// Between the sorted values, linearly: 0 gives the smallest, 0.5 the median, 1 the largest. REQUIRES: values is not
+// empty, and a share from 0 to 1.
+double quantile(std::vector<double> values, double share);
+
 }  // namespace graphdrl

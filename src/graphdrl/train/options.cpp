@@ -183,12 +183,16 @@ void validate(const TrainOptions& options) {
   if (options.maps.empty()) throw Error({.what = "no maps to train on", .where = "--maps"});
 }
 
-void write_config(const std::filesystem::path& path, const TrainOptions& options) {
+Json config_json(const TrainOptions& options) {
   Json json;
   for_each_option([&](const auto& option) {
     if (option.defaults.of(options.preset)) json[option.key] = options.*option.member;
   });
-  write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  return json;
+}
+
+void write_config(const std::filesystem::path& path, const TrainOptions& options) {
+  write_file(path, config_json(options).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 TrainOptions parse_options(const Json& given, const std::string& source) {

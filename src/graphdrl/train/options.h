@@ -95,7 +95,10 @@ void validate(const TrainOptions& options);
 // that the preset does not take, on a value of the wrong type and on one out of range.
 TrainOptions parse_options(const nlohmann::ordered_json& given, const std::string& source);
 
-// config.json: every option that the preset takes, resolved.
+// Every option that the preset takes, resolved, by its key.
+nlohmann::ordered_json config_json(const TrainOptions& options);
+
+// config.json: the same.
 void write_config(const std::filesystem::path& path, const TrainOptions& options);
 // Throws Error on a missing, unknown or mistyped key and on a value out of range.
 TrainOptions read_config(const std::filesystem::path& path);

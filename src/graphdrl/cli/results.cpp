@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/eval/seed_distribution.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/report/curve_figure.h"
+#include "graphdrl/train/finished_runs.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::size_t kWindow = 10;  // points that a curve averages: of ten episodes each, for the paper
+constexpr std::string_view kBegin = "<!-- table -->\n";
+constexpr std::string_view kEnd = "<!-- end of table -->";
+
+struct ResultsOptions {
+  std::vector<std::string> runs;
+  std::vector<std::string> maps = {"paper"};
+  std::string figure;
+  std::string into;
+  bool json = false;
+};
+
+struct PanelOfMetric {
+  const char* metric;
+  const char* title;
+  bool smooth = true;
+  std::optional<double> low = {};
+  std::optional<double> high = {};
+};
+
+// The panels of the paper's Figure 2; those of an explorer's training.
+std::vector<PanelOfMetric> panels_of(const TrainOptions& options) {
+  if (options.preset == kExplorerPreset) {
+    return {{.metric = "loss", .title = "loss"},
+            {.metric = "regret", .title = "regret: nodes lost by a choice", .low = 0}};
+  }
+  return {{.metric = "epsilon", .title = "exploration rate ε", .smooth = false, .low = 0, .high = 1},
+          {.metric = "loss", .title = "loss", .low = 0},
+          {.metric = "visited_nodes", .title = "nodes visited in an episode", .low = 0},
+          {.metric = "reward", .title = "reward of an episode"}};
+}
+
+void write_figure(const std::filesystem::path& path, const std::vector<FinishedRun>& runs) {
+  const TrainOptions& options = runs.front().options;
+  std::vector<CurvePanel> panels;
+  for (const PanelOfMetric& of : panels_of(options)) {
+    CurvePanel panel{.title = of.title, .curves = {}, .low = of.low, .high = of.high};
+    for (const FinishedRun& run : runs) {
+      std::vector<Point> curve = curve_of(run, of.metric);
+      panel.curves.push_back(of.smooth ? smoothed(std::move(curve), kWindow) : curve);
+    }
+    panels.push_back(std::move(panel));
+  }
+  const std::string note =
+      runs.size() > 1
+          ? fmt::format("The mean of {} seeds, and what lies between the lowest and the highest", runs.size())
+          : fmt::format("Seed {}", options.seed);
+  const Point size = curve_figure_size(panels.size());
+  const auto canvas = path.extension() == ".png" ? make_png_canvas(size.x, size.y)
+                                                 : make_svg_canvas(size.x, size.y, "Curves of " + options.preset, note);
+  draw_curves(*canvas, panels, options.preset == kPaperPreset ? "episode" : "round", note);
+  write_file(path, canvas->finish());
+}
+
+// Puts the table between its marks in a text. Throws Error where they are not there.
+void write_into(const std::filesystem::path& path, const std::string& table) {
+  const std::string text = read_file(path);
+  const std::size_t begin = text.find(kBegin);
+  const std::size_t end = text.find(kEnd, begin);
+  if (begin == std::string::npos || end == std::string::npos) {
+    throw Error({.what = "no place for a table",
+                 .expected = "a line <!-- table --> and a line <!-- end of table -->",
+                 .where = path.string()});
+  }
+  write_file(path, text.substr(0, begin) + std::string(kBegin) + table + text.substr(end));
+}
+
+Json to_json(const SeedDistribution& distribution, const std::vector<FinishedRun>& runs) {
+  Json seeds = Json::array();
+  for (const FinishedRun& run : runs) seeds.push_back(run.options.seed);
+  Json rows = Json::array();
+  for (const SeedRow& row : distribution.rows) {
+    rows.push_back({{"map", row.name},
+                    {"mean", row.over_seeds.mean},
+                    {"std", or_null(row.over_seeds.std)},
+                    {"min", row.lowest},
+                    {"lower_quartile", row.lower_quartile},
+                    {"median", row.median},
+                    {"upper_quartile", row.upper_quartile},
+                    {"max", row.over_seeds.best},
+                    {"by_seed", row.means},
+                    {"paper", or_null(row.paper)},
+                    {"paper_z", or_null(row.paper_z)},
+                    {"random_walk", row.random_walk},
+                    {"dfs", row.depth_first},
+                    {"nearest", row.nearest},
+                    {"optimum", or_null(row.optimum)}});
+  }
+  return {{"seeds", seeds}, {"budget", distribution.budget}, {"rows", rows}};
+}
+
+void results(const ResultsOptions& options) {
+  const std::string ending = std::filesystem::path(options.figure).extension();
+  if (!options.figure.empty() && ending != ".svg" && ending != ".png") {
+    throw Error(
+        {.what = "bad name of a figure", .expected = "FILE.svg or FILE.png", .got = in_quotes(options.figure, 200)});
+  }
+  const std::vector<FinishedRun> runs = read_finished_runs(options.runs);
+  const TrainOptions& trained = runs.front().options;
+  if (trained.preset != kPaperPreset) {
+    if (options.figure.empty() || options.json || !options.into.empty()) {
+      throw Error({.what = "Table 2 is of the preset paper", .expected = "--figure FILE alone for an explorer's runs"});
+    }
+    return write_figure(options.figure, runs);
+  }
+  std::vector<std::string> policies;
+  for (const FinishedRun& run : runs) policies.push_back(run.directory.policy().string());
+  const SeedDistribution distribution =
+      distribution_over_seeds(policies, load_worlds(options.maps), trained.maps, Budget::parse(trained.budget));
+  if (!options.figure.empty()) write_figure(options.figure, runs);
+  if (!options.into.empty()) write_into(options.into, markdown_distribution(distribution));
+  if (options.json) return print_json(to_json(distribution, runs));
+  print_text(format_distribution(distribution));
+}
+
+}  // namespace
+
+void add_results_command(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand(
+      "results",
+      "Compare trainings that differ in their seeds alone: the paper's Table 2 as a distribution, its curves");
+  const auto options = std::make_shared<ResultsOptions>();
+  command->add_option("runs", options->runs, "Run directories that are finished, and folders of many seeds")
+      ->required()
+      ->type_name("RUN");
+  command->add_option("--maps", options->maps, "Maps to compare on")->type_name("MAP")->capture_default_str();
+  command
+      ->add_option("--figure", options->figure, "Draw the curves of Figure 2, with a band over the seeds: .svg, .png")
+      ->check(not_empty())
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--into", options->into,
+          "Put the table, in Markdown, between the lines <!-- table --> and <!-- end of table --> of this file")
+      ->check(not_empty())
+      ->type_name("FILE.md");
+  command->add_flag("--json", options->json, "Print one JSON document");
+  add_threads_option(*command);
+  command->callback([options] { results(*options); });
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,42 @@
+// Curves of trainings as a picture of panels, two a row.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "graphdrl/graph/point.h"
+#include "graphdrl/report/canvas.h"
+
+namespace graphdrl {
+
+struct CurvePanel {
+  std::string title;
+  std::vector<std::vector<Point>> curves;  // one a run; x ascends
+  std::optional<double> low = {};          // of the axis; where empty, as the curves need
+  std::optional<double> high = {};
+};
+
+// The mean of several curves where all that reach it are known, and what lies between the lowest and the highest.
+struct CurveBand {
+  std::vector<Point> mean;
+  std::vector<Point> lowest;   // as long
+  std::vector<Point> highest;  // as long
+};
+CurveBand band_of(const std::vector<std::vector<Point>>& curves);
+
+// The mean over the last `window` points, or as many as there are.
+std::vector<Point> smoothed(std::vector<Point> curve, std::size_t window);
+
+// About five round numbers from low to high. REQUIRES: low < high.
+std::vector<double> axis_ticks(double low, double high);
+
+// Width and height of the picture, in pixels.
+Point curve_figure_size(std::size_t panels);
+
+// Each panel's mean as a line, and its band where there are several curves. x_title: under each. note: at the bottom.
+void draw_curves(Canvas& canvas, const std::vector<CurvePanel>& panels, const std::string& x_title,
+                 const std::string& note);
+
+}  // namespace graphdrl

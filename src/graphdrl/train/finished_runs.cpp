@@ -1,0 +1,77 @@
+#include "graphdrl/train/finished_runs.h"
+
+#include <sstream>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/train/seed_runs.h"
+
+namespace graphdrl {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* counter_of(const TrainOptions& options) {
+  return options.preset == kPaperPreset ? "episode" : "round";
+}
+
+FinishedRun read_finished_run(const RunDirectory& directory) {
+  FinishedRun run{.directory = directory, .options = read_config(directory.config()), .metrics = {}};
+  const std::string source = directory.metrics().string();
+  const std::string text = read_file(source);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    require_shallow_json(line, source);
+    run.metrics.push_back(Json::parse(line, nullptr, /*allow_exceptions=*/false));
+    if (run.metrics.back().is_object()) continue;
+    throw Error({.what = "a line that is no JSON object", .got = in_quotes(line, 80), .where = source});
+  }
+  const char* const counter = counter_of(run.options);
+  const std::int64_t all = run.options.preset == kPaperPreset ? run.options.episodes : run.options.rounds;
+  const Json done = run.metrics.empty() ? Json(0) : run.metrics.back().value(counter, Json(0));
+  if (done != all) {
+    throw Error({.what = "the run is not finished",
+                 .expected = std::to_string(all) + " " + counter + "s",
+                 .got = done.dump(),
+                 .where = directory.path().string()});
+  }
+  return run;
+}
+
+}  // namespace
+
+std::vector<FinishedRun> read_finished_runs(const std::vector<std::string>& paths) {
+  std::vector<FinishedRun> runs;
+  for (const std::string& path : paths) {
+    if (!SeedRuns::are_in(path)) {
+      runs.push_back(read_finished_run(RunDirectory(path)));
+      continue;
+    }
+    for (const std::uint64_t seed : read_seeds(path).seeds) {
+      runs.push_back(read_finished_run(SeedRuns::run_directory_in(path, seed)));
+    }
+  }
+  for (const FinishedRun& run : runs) {
+    TrainOptions same = run.options;
+    same.seed = runs.front().options.seed;
+    if (config_json(same) == config_json(runs.front().options)) continue;
+    throw Error({.what = "runs of different options",
+                 .expected = "runs that differ in their seeds alone",
+                 .where = run.directory.path().string()});
+  }
+  return runs;
+}
+
+std::vector<Point> curve_of(const FinishedRun& run, const std::string& metric) {
+  std::vector<Point> curve;
+  const char* const counter = counter_of(run.options);
+  for (const Json& line : run.metrics) {
+    if (!line.contains(counter) || !line[counter].is_number() || !line.contains(metric)) continue;
+    if (line[metric].is_number()) curve.push_back({line[counter].get<double>(), line[metric].get<double>()});
+  }
+  if (curve.empty()) throw Error({.what = "no value of " + metric, .where = run.directory.metrics().string()});
+  return curve;
+}
+
+}  // namespace graphdrl

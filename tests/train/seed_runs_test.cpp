@@ -1,0 +1,121 @@
+#include "graphdrl/train/seed_runs.h"
+
+#include <gmock/gmock.h>
+
+#include <atomic>
+
+#include "graphdrl/base/parallel.h"
+#include "train/training.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::HasSubstr;
+using Seeds = std::vector<std::uint64_t>;
+
+constexpr auto kNever = [] { return false; };
+constexpr auto kSilent = [](const SeedRunsNews&) {};
+
+TEST(ParseSeeds, TakesNumbersAndRanges) {
+  EXPECT_EQ(parse_seeds("3"), Seeds{3});
+  EXPECT_EQ(parse_seeds("1-4"), (Seeds{1, 2, 3, 4}));
+  EXPECT_EQ(parse_seeds("9,1-3,2,18446744073709551615"), (Seeds{1, 2, 3, 9, 18446744073709551615u}));
+  for (const char* const bad : {"", ",", "1,", ",1", "1-", "-1", "4-1", "1--2", "1 2", "a", "1-2-3", "0x1", "1.5",
+                                "18446744073709551616", "0-18446744073709551615", "1-10001"}) {
+    EXPECT_THAT(error_of([&] { parse_seeds(bad); }), HasSubstr("--seeds")) << bad;
+  }
+}
+
+// The run of a seed alone.
+Bytes alone(const std::filesystem::path& path, TrainOptions options, std::uint64_t seed) {
+  options.seed = seed;
+  return train_in(path, options);
+}
+
+class SeedRunsThread : public ::testing::TestWithParam<TrainOptions> {
+ protected:
+  ~SeedRunsThread() override { set_threads(1); }
+};
+
+INSTANTIATE_TEST_SUITE_P(, SeedRunsThread, ::testing::Values(short_paper(), short_explorer()),
+                         [](const auto& test) { return test.param.preset; });
+
+TEST_P(SeedRunsThread, EndWithTheBytesOfRunsAlone) {
+  const TemporaryFolder folder;
+  const Seeds seeds = {1, 2, 7};
+  std::vector<Bytes> single;
+  for (const std::uint64_t seed : seeds) {
+    single.push_back(alone(folder / ("alone" + std::to_string(seed)), GetParam(), seed));
+  }
+  EXPECT_FALSE(single[0] == single[1]);
+  for (const int count : {1, 2, 4}) {
+    set_threads(count);
+    SeedRuns runs = SeedRuns::start(GetParam(), seeds, folder / ("all" + std::to_string(count)));
+    std::int64_t done = 0;
+    int seeds_done = 0;
+    EXPECT_TRUE(runs.run(kNever, [&](const SeedRunsNews& news) {
+      EXPECT_EQ(news.units_done, ++done);
+      EXPECT_GE(news.seeds_done, seeds_done);
+      seeds_done = news.seeds_done;
+    }));
+    EXPECT_EQ(done, 3 * runs.units().count);
+    EXPECT_EQ(seeds_done, 3);
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      EXPECT_TRUE(bytes_of(runs.run_directory(seeds[i])) == single[i]) << count << " threads, seed " << seeds[i];
+      EXPECT_EQ(read_config(runs.run_directory(seeds[i]).config()).seed, seeds[i]);
+    }
+  }
+}
+
+TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
+  const TemporaryFolder folder;
+  const Bytes second = alone(folder / "alone", GetParam(), 2);
+  set_threads(2);
+  SeedRuns::start(GetParam(), {1, 2, 3}, folder / "all");
+  int sessions = 1;
+  // Stopped after so many questions, on whatever thread.
+  for (bool finished = false; !finished; ++sessions) {
+    std::atomic<int> asked = 0;
+    SeedRuns runs = SeedRuns::resume(folder / "all");
+    finished = runs.run([&] { return asked++ > 50; }, kSilent);
+  }
+  EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? 4 : 1);
+  EXPECT_TRUE(bytes_of(RunDirectory(folder / "all" / "seed-2")) == second);
+}
+
+// A kill while the folder was made: a run is missing, or has its configuration alone.
+TEST(SeedRuns, BeginWhatIsMissing) {
+  const TemporaryFolder folder;
+  SeedRuns::start(short_paper(), {1, 2, 3}, folder / "all");
+  std::filesystem::remove_all(folder / "all" / "seed-2");
+  std::filesystem::remove(folder / "all" / "seed-3" / "checkpoint.safetensors");
+  SeedRuns runs = SeedRuns::resume(folder / "all");
+  EXPECT_TRUE(runs.run(kNever, kSilent));
+  for (const std::uint64_t seed : {2, 3}) {
+    EXPECT_TRUE(bytes_of(runs.run_directory(seed)) == alone(folder / std::to_string(seed), short_paper(), seed));
+  }
+}
+
+TEST(SeedRuns, RefuseFoldersThatAreNone) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(SeedRuns::are_in(folder / "all"));
+  TrainOptions bad = short_paper();
+  bad.maps = {"no-such-map"};
+  EXPECT_THAT(error_of([&] { SeedRuns::start(bad, {1, 2}, folder / "all"); }), HasSubstr("no such map"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "all"));
+  SeedRuns::start(short_paper(), {1, 2}, folder / "all");
+  EXPECT_TRUE(SeedRuns::are_in(folder / "all"));
+  EXPECT_THAT(error_of([&] { SeedRuns::start(short_paper(), {1, 2}, folder / "all"); }), HasSubstr("--resume"));
+  const std::filesystem::path file = folder / "all" / "seeds.json";
+  const std::string whole = read_file(file);
+  for (const char* const text : {"", "[]", "{}", R"({"seeds": []})", R"({"seeds": [-1]})", R"({"seeds": [1, 1]})",
+                                 R"({"seeds": [1], "speed": 3})", R"({"seeds": "1-2"})"}) {
+    write_file(file, text);
+    EXPECT_THAT(error_of([&] { SeedRuns::resume(folder / "all"); }), HasSubstr("seeds.json")) << text;
+  }
+  write_file(file, whole);
+  EXPECT_EQ(error_of([&] { SeedRuns::resume(folder / "all"); }), "");
+}
+
+}  // namespace
+}  // namespace graphdrl
