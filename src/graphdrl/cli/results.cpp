@@ -121,6 +121,7 @@ void results(const ResultsOptions& options) {
     return write_figure(options.figure, runs);
   }
   std::vector<std::string> policies;
+  policies.reserve(runs.size());
   for (const FinishedRun& run : runs) policies.push_back(run.directory.policy().string());
   const SeedDistribution distribution =
       distribution_over_seeds(policies, load_worlds(options.maps), trained.maps, Budget::parse(trained.budget));

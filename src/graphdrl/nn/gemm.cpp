@@ -136,11 +136,13 @@ void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b
   gemm(op_a, m, n, k, a, lda, packed, accumulate, c, ldc);
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): T is a type.
 #define GRAPHDRL_INSTANTIATE(T)                                                                \
   template class PackedMatrix<T>;                                                              \
   template void gemm(Op, int, int, int, const T*, int, const PackedMatrix<T>&, bool, T*, int); \
   template void gemm(int, const T*, int, const PackedMatrix<T>&, PackedMatrix<T>&);            \
   template void gemm(Op, Op, int, int, int, const T*, int, const T*, int, bool, T*, int);
+// NOLINTEND(bugprone-macro-parentheses)
 GRAPHDRL_INSTANTIATE(float)
 GRAPHDRL_INSTANTIATE(double)
 #undef GRAPHDRL_INSTANTIATE

@@ -217,8 +217,10 @@ void write_onnx(const std::filesystem::path& path, const PaperParameters& parame
   for (std::size_t layer = 1; layer <= kConvShapes.size(); ++layer) {
     x = gated_graph_conv(model, graphs, fmt::format("conv{}", layer), kConvShapes[layer - 1], x);
     if (layer == kConvShapes.size()) break;
-    const std::string bn = fmt::format("bn{}", layer);
-    x = model.add("BatchNormalization", {x, bn + ".weight", bn + ".bias", bn + ".running_mean", bn + ".running_var"})
+    const auto of_norm = [&](const char* tensor) { return fmt::format("bn{}.{}", layer, tensor); };
+    x = model
+            .add("BatchNormalization",
+                 {x, of_norm("weight"), of_norm("bias"), of_norm("running_mean"), of_norm("running_var")})
             .with("epsilon", kBatchNormEpsilon);
   }
   const std::string pooled = pool(model, graphs, kFc1Shape.inputs, x);
@@ -230,7 +232,7 @@ void write_onnx(const std::filesystem::path& path, const PaperParameters& parame
 }
 
 void write_onnx(const std::filesystem::path& path, const ExplorerParameters& parameters) {
-  constexpr int kWidth = kExplorerConvShape.width;
+  constexpr int kNodeWidth = kExplorerConvShape.width;
   OnnxModel model(ExplorerParameters::description());
   model.add_tensors(parameters.views());
   const auto numbers = onnx::TensorProto::INT64;
@@ -243,7 +245,7 @@ void write_onnx(const std::filesystem::path& path, const ExplorerParameters& par
 
   const std::string embedded = gated_graph_conv(model, graphs, "conv", kExplorerConvShape, node_x);
   const std::string ones = model.add("Expand", {model.scalar(1), model.add("Shape", {graphs.graphs})});
-  const std::string means = model.add("Div", {pool(model, graphs, kWidth, embedded), pool(model, graphs, 1, ones)});
+  const std::string means = model.add("Div", {pool(model, graphs, kNodeWidth, embedded), pool(model, graphs, 1, ones)});
   const std::string joined =
       model
           .add("Concat", {model.add("Gather", {embedded, target}),

@@ -34,6 +34,7 @@ class Axes {
 
   std::vector<Point> at(const std::vector<Point>& values) const {
     std::vector<Point> points;
+    points.reserve(values.size());
     for (const Point value : values) points.push_back(at(value));
     return points;
   }
@@ -123,8 +124,8 @@ std::vector<double> axis_ticks(double low, double high) {
 }
 
 Point curve_figure_size(std::size_t panels) {
-  const auto rows = static_cast<double>((panels + 1) / 2);
-  return {2 * (kWidth + kLeft) + kBetween + 20, rows * (kHeight + kTop + kBelow) + 25};
+  const std::size_t rows = (panels + 1) / 2;
+  return {2 * (kWidth + kLeft) + kBetween + 20, static_cast<double>(rows) * (kHeight + kTop + kBelow) + 25};
 }
 
 void draw_curves(Canvas& canvas, const std::vector<CurvePanel>& panels, const std::string& x_title,
@@ -132,8 +133,10 @@ void draw_curves(Canvas& canvas, const std::vector<CurvePanel>& panels, const st
   const Point size = curve_figure_size(panels.size());
   canvas.rectangle({0, 0}, size.x, size.y, {0xff, 0xff, 0xff});
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const Point corner = {kLeft + static_cast<double>(i % 2) * (kWidth + kLeft + kBetween),
-                          kTop + static_cast<double>(i / 2) * (kHeight + kTop + kBelow)};
+    const std::size_t row = i / 2;
+    const std::size_t column = i % 2;
+    const Point corner = {kLeft + static_cast<double>(column) * (kWidth + kLeft + kBetween),
+                          kTop + static_cast<double>(row) * (kHeight + kTop + kBelow)};
     const Axes axes = axes_of(panels[i], corner);
     const CurveBand band = band_of(panels[i].curves);
     if (panels[i].curves.size() > 1) {

@@ -215,7 +215,8 @@ TrainOptions parse_options(const Json& given, const std::string& source) {
     if (option.defaults.of(preset)) read(option.key, options.*option.member);
   });
   if (known != given.size()) {
-    for (const auto& [key, value] : given.items()) {
+    for (const auto& item : given.items()) {
+      const std::string& key = item.key();
       bool taken = false;
       for_each_option([&](const auto& option) { taken = taken || (option.key == key && option.defaults.of(preset)); });
       if (taken) continue;
