@@ -14,7 +14,7 @@ import pytest
 from conftest import BIN
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-COMMANDS = "train evaluate plan check report inspect export results bench completion".split() + [
+COMMANDS = "train evaluate plan check report inspect export results tune bench completion".split() + [
     f"maps {name}" for name in "info show convert generate".split()
 ]
 

@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 using Seeds = std::vector<std::uint64_t>;
 
 constexpr auto kNever = [] { return false; };
-constexpr auto kSilent = [](const SeedRunsNews&) {};
+constexpr auto kSilent = [](const SideBySideNews&) {};
 
 TEST(ParseSeeds, TakesNumbersAndRanges) {
   EXPECT_EQ(parse_seeds("3"), Seeds{3});
@@ -53,16 +53,17 @@ TEST_P(SeedRunsThread, EndWithTheBytesOfRunsAlone) {
     SeedRuns runs = SeedRuns::start(GetParam(), seeds, folder / ("all" + std::to_string(count)));
     std::int64_t done = 0;
     int seeds_done = 0;
-    EXPECT_TRUE(runs.run(kNever, [&](const SeedRunsNews& news) {
+    EXPECT_TRUE(runs.trainings().run(kNever, [&](const SideBySideNews& news) {
       EXPECT_EQ(news.units_done, ++done);
-      EXPECT_GE(news.seeds_done, seeds_done);
-      seeds_done = news.seeds_done;
+      EXPECT_GE(news.runs_done, seeds_done);
+      seeds_done = news.runs_done;
     }));
-    EXPECT_EQ(done, 3 * runs.units().count);
+    EXPECT_EQ(done, 3 * runs.trainings().units().count);
     EXPECT_EQ(seeds_done, 3);
     for (std::size_t i = 0; i < seeds.size(); ++i) {
-      EXPECT_TRUE(bytes_of(runs.run_directory(seeds[i])) == single[i]) << count << " threads, seed " << seeds[i];
-      EXPECT_EQ(read_config(runs.run_directory(seeds[i]).config()).seed, seeds[i]);
+      EXPECT_TRUE(bytes_of(runs.trainings().runs()[i].directory) == single[i])
+          << count << " threads, seed " << seeds[i];
+      EXPECT_EQ(read_config(runs.trainings().runs()[i].directory.config()).seed, seeds[i]);
     }
   }
 }
@@ -77,7 +78,7 @@ TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
   for (bool finished = false; !finished; ++sessions) {
     std::atomic<int> asked = 0;
     SeedRuns runs = SeedRuns::resume(folder / "all");
-    finished = runs.run([&] { return asked++ > 50; }, kSilent);
+    finished = runs.trainings().run([&] { return asked++ > 50; }, kSilent);
   }
   EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? 4 : 1);
   EXPECT_TRUE(bytes_of(RunDirectory(folder / "all" / "seed-2")) == second);
@@ -90,9 +91,10 @@ TEST(SeedRuns, BeginWhatIsMissing) {
   std::filesystem::remove_all(folder / "all" / "seed-2");
   std::filesystem::remove(folder / "all" / "seed-3" / "checkpoint.safetensors");
   SeedRuns runs = SeedRuns::resume(folder / "all");
-  EXPECT_TRUE(runs.run(kNever, kSilent));
+  EXPECT_TRUE(runs.trainings().run(kNever, kSilent));
   for (const std::uint64_t seed : {2, 3}) {
-    EXPECT_TRUE(bytes_of(runs.run_directory(seed)) == alone(folder / std::to_string(seed), short_paper(), seed));
+    EXPECT_TRUE(bytes_of(SeedRuns::run_directory_in(folder / "all", seed)) ==
+                alone(folder / std::to_string(seed), short_paper(), seed));
   }
 }
 

@@ -16,5 +16,6 @@ void add_plan_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_results_command(CLI::App& app);
 void add_train_command(CLI::App& app);
+void add_tune_command(CLI::App& app);
 
 }  // namespace graphdrl

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", GRAPHDRL_VERSION);
   app.require_subcommand(1);
   graphdrl::add_train_command(app);
+  graphdrl::add_tune_command(app);
   graphdrl::add_evaluate_command(app);
   graphdrl::add_plan_command(app);
   graphdrl::add_check_command(app);

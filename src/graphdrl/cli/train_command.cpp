@@ -27,14 +27,6 @@ extern "C" void remember_signal(int signal) {
   stop_signal = signal;
 }
 
-void catch_signals() {
-  struct sigaction action {};
-  action.sa_handler = remember_signal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGHUP, &action, nullptr);
-}
-
 // Reads --config files: a run's config.json, or CLI11's own format (name = value).
 class ConfigReader : public CLI::ConfigTOML {
  public:
@@ -149,7 +141,7 @@ void train(Trainer& trainer, bool json) {
   const std::string run = trainer.run_directory().path().string();
   const TrainingProgress& progress = trainer.progress();
   const Recipe::Units& units = trainer.units();
-  catch_signals();
+  catch_training_signals();
   ProgressDisplay display(stderr, units.name, progress.done);
   const bool finished = trainer.run([] { return stop_signal != 0; },
                                     [&](const TrainingNews& news) {
@@ -165,31 +157,34 @@ void train(Trainer& trainer, bool json) {
 }
 
 // The same of many seeds.
-void train(SeedRuns& runs, bool json) {
-  const Recipe::Units& units = runs.units();
+void train(SeedRuns& seeds, bool json) {
+  SideBySide& trainings = seeds.trainings();
+  const Recipe::Units& units = trainings.units();
   std::int64_t before = 0;
-  for (const std::uint64_t seed : runs.seeds()) before += runs.progress(seed).done;
-  catch_signals();
+  for (const TrainingProgress& progress : trainings.progress()) before += progress.done;
+  catch_training_signals();
   ProgressDisplay display(stderr, units.name, before);
-  const std::size_t seeds = runs.seeds().size();
+  const std::size_t count = trainings.runs().size();
   int seeds_done = 0;
-  const bool finished = runs.run([] { return stop_signal != 0; },
-                                 [&](const SeedRunsNews& news) {
-                                   seeds_done = news.seeds_done;
-                                   const std::string status =
-                                       fmt::format("{} of {} seeds done  {:.0f} {}/s", seeds_done, seeds,
-                                                   news.samples_per_s, units.samples);
-                                   display.show(news.units_done, news.units, status, news.units_done == news.units);
-                                 });
+  const bool finished = trainings.run([] { return stop_signal != 0; },
+                                      [&](const SideBySideNews& news) {
+                                        seeds_done = news.runs_done;
+                                        const bool last = news.units_done == news.units;
+                                        display.show(news.units_done, news.units,
+                                                     fmt::format("{} of {} seeds done  {:.0f} {}/s", seeds_done, count,
+                                                                 news.samples_per_s, units.samples),
+                                                     last);
+                                      });
   display.finish();
-  if (!finished) leave_stopped(fmt::format("{} of {} seeds", seeds_done, seeds), runs.folder().string());
+  if (!finished) leave_stopped(fmt::format("{} of {} seeds", seeds_done, count), seeds.folder().string());
   Json reports = Json::array();
-  for (const std::uint64_t seed : runs.seeds()) {
-    reports.push_back({{"seed", seed}});
-    reports.back().update(report_of(runs.run_directory(seed), runs.progress(seed), units));
+  for (std::size_t i = 0; i < count; ++i) {
+    const PlannedRun& run = trainings.runs()[i];
+    reports.push_back({{"seed", run.options.seed}});
+    reports.back().update(report_of(run.directory, trainings.progress()[i], units));
   }
   if (json) return print_json({{"runs", reports}});
-  print_text(fmt::format("Trained {} seeds, {} {}s each. The runs: {} to {}\n", seeds, units.count, units.name,
+  print_text(fmt::format("Trained {} seeds, {} {}s each. The runs: {} to {}\n", count, units.count, units.name,
                          reports.front()["run"].get<std::string>(), reports.back()["run"].get<std::string>()));
 }
 
@@ -269,6 +264,18 @@ int run_train_command(const std::vector<std::string>& arguments, const MakePaper
   std::vector<const char*> argv = {"graphdrl train"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   return run_program(program.app(), static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
+}
+
+void catch_training_signals() {
+  struct sigaction action {};
+  action.sa_handler = remember_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
+}
+
+int training_signal() {
+  return stop_signal;
 }
 
 void visit_train_options(const std::function<void(const CLI::App&)>& visit) {

@@ -14,6 +14,10 @@ namespace graphdrl {
 // knows.
 int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner);
 
+// From now on the signals that end programs end trainings: training_signal() is the last one, 0 before any.
+void catch_training_signals();
+int training_signal();
+
 // Shows the table of its options, for manuals and completions.
 void visit_train_options(const std::function<void(const CLI::App&)>& visit);
 

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/base/parallel.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 
@@ -41,6 +38,15 @@ std::optional<std::uint64_t> take_number(std::string_view& text) {
   if (error != std::errc()) return std::nullopt;
   text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   return number;
+}
+
+std::vector<PlannedRun> planned_runs(const SeedsFile& file, const std::filesystem::path& folder) {
+  std::vector<PlannedRun> runs;
+  for (const std::uint64_t seed : file.seeds) {
+    runs.push_back({.options = file.options, .directory = SeedRuns::run_directory_in(folder, seed)});
+    runs.back().options.seed = seed;
+  }
+  return runs;
 }
 
 }  // namespace
@@ -90,88 +96,29 @@ RunDirectory SeedRuns::run_directory_in(const std::filesystem::path& folder, std
   return RunDirectory(folder / fmt::format("seed-{}", seed));
 }
 
-const TrainingProgress& SeedRuns::progress(std::uint64_t seed) const {
-  return progress_[static_cast<std::size_t>(std::lower_bound(seeds_.begin(), seeds_.end(), seed) - seeds_.begin())];
-}
+SeedRuns::SeedRuns(const SeedsFile& file, const std::filesystem::path& folder, const MakePaperLearner& make_learner)
+    : folder_(folder), trainings_(planned_runs(file, folder), make_learner) {}
 
-SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t> seeds, std::filesystem::path folder,
-                         const MakePaperLearner& make_learner) {
+SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t> seeds,
+                         const std::filesystem::path& folder, const MakePaperLearner& make_learner) {
   if (are_in(folder)) {
     throw Error({.what = "the folder holds runs already",
                  .expected = "a new folder, or --resume to go on with them",
                  .where = folder.string()});
   }
-  SeedRuns runs(options, std::move(seeds), std::move(folder), make_learner);
+  const SeedsFile file{.seeds = std::move(seeds), .options = options};
   // The first one is begun before anything is written: it refuses what all would.
-  runs.options_.seed = runs.seeds_.front();
-  Trainer::start(runs.options_, runs.run_directory(runs.seeds_.front()), make_learner);
-  Json json = config_json(runs.options_);
+  const PlannedRun first = planned_runs(file, folder).front();
+  Trainer::start(first.options, first.directory, make_learner);
+  Json json = config_json(options);
   json.erase("seed");
-  json[kSeedsKey] = runs.seeds_;
-  write_file(seeds_file(runs.folder_), json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
-  runs.begin();
-  return runs;
+  json[kSeedsKey] = file.seeds;
+  write_file(seeds_file(folder), json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  return {file, folder, make_learner};
 }
 
-SeedRuns SeedRuns::resume(std::filesystem::path folder, const MakePaperLearner& make_learner) {
-  SeedsFile file = read_seeds(folder);
-  SeedRuns runs(std::move(file.options), std::move(file.seeds), std::move(folder), make_learner);
-  runs.begin();
-  return runs;
-}
-
-void SeedRuns::begin() {
-  for (std::size_t i = 0; i < seeds_.size(); ++i) {
-    const RunDirectory run = run_directory(seeds_[i]);
-    options_.seed = seeds_[i];
-    const bool there = std::filesystem::exists(run.checkpoint());
-    const auto trainer = there ? Trainer::resume(run, make_learner_) : Trainer::start(options_, run, make_learner_);
-    progress_[i] = trainer->progress();
-    units_ = trainer->units();
-  }
-}
-
-bool SeedRuns::run(const std::function<bool()>& stop, const std::function<void(const SeedRunsNews&)>& tell) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto sum = [&](auto member) {
-    std::int64_t all = 0;
-    for (const TrainingProgress& progress : progress_) all += progress.*member;
-    return all;
-  };
-  const auto trained = [&](const TrainingProgress& progress) { return progress.done == units_.count; };
-  const std::int64_t samples_before = sum(&TrainingProgress::samples);
-  std::mutex mutex;
-  const auto note = [&](std::size_t i, const TrainingProgress& progress) {
-    const std::lock_guard lock(mutex);
-    progress_[i] = progress;
-    const double session_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const std::int64_t samples = sum(&TrainingProgress::samples) - samples_before;
-    tell({.seeds_done = static_cast<int>(std::count_if(progress_.begin(), progress_.end(), trained)),
-          .units_done = sum(&TrainingProgress::done),
-          .units = units_.count * std::ssize(seeds_),
-          .samples_per_s = static_cast<double>(samples) / std::max(session_s, 1e-9)});
-  };
-  // Another device has one training at a time.
-  const bool side_by_side = options_.device.empty() || options_.device == "cpu";
-  const auto train = [&](int i) {
-    const auto index = static_cast<std::size_t>(i);
-    if (trained(progress_[index]) || stop()) return;
-    try {
-      const auto trainer = Trainer::resume(run_directory(seeds_[index]), make_learner_);
-      trainer->run(stop, [&](const TrainingNews& news) { note(index, news.progress); });
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw std::runtime_error(fmt::format("seed {}: {}", seeds_[index], error.what()));
-    }
-  };
-  const int count = static_cast<int>(seeds_.size());
-  if (side_by_side) {
-    parallel_for(count, train);
-  } else {
-    for (int i = 0; i < count; ++i) train(i);
-  }
-  return std::all_of(progress_.begin(), progress_.end(), trained);
+SeedRuns SeedRuns::resume(const std::filesystem::path& folder, const MakePaperLearner& make_learner) {
+  return {read_seeds(folder), folder, make_learner};
 }
 
 }  // namespace graphdrl

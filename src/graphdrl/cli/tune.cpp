@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/cli/train_command.h"
+#include "graphdrl/report/progress.h"
+#include "graphdrl/train/tuning.h"
+
+namespace graphdrl {
+namespace {
+
+struct TuneCommand {
+  std::string rounds = "30x2,6x8";
+  TuneOptions options;
+  std::string out = "runs/tune";
+  std::string resume;
+  bool json = false;
+};
+
+std::string name_of(const Setting& setting) {
+  if (setting.empty()) return "the paper's";
+  std::string name;
+  for (const auto& item : setting.items()) {
+    const std::string value = item.value().is_string() ? item.value().get<std::string>() : item.value().dump();
+    name += fmt::format("{}{} {}", name.empty() ? "" : ", ", item.key(), value);
+  }
+  return name;
+}
+
+Json to_json(const Tuning& tuning) {
+  Json rounds = Json::array();
+  for (const RoundScores& scores : tuning.scores()) {
+    Json settings = Json::array();
+    for (const SettingScore& score : scores.settings) {
+      settings.push_back({{"setting", tuning.settings()[score.setting]},
+                          {"mean", score.over_seeds.mean},
+                          {"std", or_null(score.over_seeds.std)},
+                          {"by_seed", score.by_seed},
+                          {"over_paper", score.over_paper},
+                          {"over_paper_errors", or_null(score.over_paper_errors)}});
+    }
+    rounds.push_back(settings);
+  }
+  Json effects = Json::array();
+  for (const ValueEffect& effect : tuning.effects()) {
+    effects.push_back({{"option", effect.option},
+                       {"value", effect.value},
+                       {"settings", effect.over_settings.count},
+                       {"mean", effect.over_settings.mean},
+                       {"std", or_null(effect.over_settings.std)}});
+  }
+  return {{"rounds", rounds}, {"effects", effects}};
+}
+
+std::string to_text(const Tuning& tuning) {
+  std::string text;
+  for (std::size_t round = 0; round < tuning.scores().size(); ++round) {
+    text += fmt::format(
+        "Round {}: {} seeds of {} episodes; percent of unseen maps visited\n\n  mean    std  over the "
+        "paper's, in standard errors\n",
+        round + 1, tuning.options().rounds[round].seeds, tuning.options().episodes);
+    for (const SettingScore& score : tuning.scores()[round].settings) {
+      const auto& errors = score.over_paper_errors;
+      text += fmt::format("{:6.1f} {:>6}  {:>+6.1f} {:>7}  {}\n", score.over_seeds.mean,
+                          score.over_seeds.std ? fmt::format("{:.1f}", *score.over_seeds.std) : "–", score.over_paper,
+                          errors ? fmt::format("({:+.1f})", *errors) : "", name_of(tuning.settings()[score.setting]));
+    }
+    text += '\n';
+  }
+  text += "Means over the settings of round 1 that share a value\n\n  mean    std  settings\n";
+  for (const ValueEffect& effect : tuning.effects()) {
+    const Summary& summary = effect.over_settings;
+    text += fmt::format("{:6.1f} {:>6} {:>9}  {} {}\n", summary.mean,
+                        summary.std ? fmt::format("{:.1f}", *summary.std) : "–", summary.count, effect.option,
+                        effect.value);
+  }
+  return text;
+}
+
+void tune(TuneCommand command) {
+  command.options.rounds = parse_rounds(command.rounds);
+  const std::string folder = command.resume.empty() ? command.out : command.resume;
+  Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder) : Tuning::resume(folder);
+  catch_training_signals();
+  ProgressDisplay display(stderr, "round", 0);
+  const bool finished = tuning.run(
+      [] { return training_signal() != 0; },
+      [&](std::size_t round, const SideBySideNews& news) {
+        const std::string line = fmt::format("{}/{}  {} runs done  {:.0f} steps/s", round + 1,
+                                             tuning.options().rounds.size(), news.runs_done, news.samples_per_s);
+        display.show_line(line, static_cast<double>(news.units_done) / static_cast<double>(news.units));
+      });
+  display.finish();
+  if (!finished) {
+    print_diagnostic(fmt::format("Stopped; everything is saved. To go on:\n  graphdrl tune --resume {}\n", folder));
+    throw CLI::RuntimeError(128 + training_signal());
+  }
+  if (command.json) return print_json(to_json(tuning));
+  print_text(to_text(tuning));
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app) {
+  CLI::App* const command = app.add_subcommand(
+      "tune",
+      "Search for better hyper-parameters of the paper's training, by successive halving over settings and seeds");
+  const auto options = std::make_shared<TuneCommand>();
+  CLI::Option* const rounds =
+      command
+          ->add_option("--rounds", options->rounds,
+                       "Settings by seeds of each round; the best go on, beside the paper's, with fresh seeds")
+          ->type_name("ROUNDS")
+          ->capture_default_str();
+  CLI::Option* const episodes =
+      command->add_option("--episodes", options->options.episodes, "Episodes of each training")->capture_default_str();
+  CLI::Option* const train_maps =
+      command
+          ->add_option("--train-maps", options->options.train_maps,
+                       "Random maps of 5x5 cells, for settings that train on many instead of the paper's one")
+          ->check(CLI::Range(1, 10'000))
+          ->capture_default_str();
+  CLI::Option* const validation_maps =
+      command
+          ->add_option("--validation-maps", options->options.validation_maps,
+                       "Random maps of 5x5 cells to compare on, none of them the paper's or to train on")
+          ->check(CLI::Range(1, 10'000))
+          ->capture_default_str();
+  CLI::Option* const seed = add_seed_option(*command, options->options.seed, "Of the settings and the trainings");
+  CLI::Option* const out = command->add_option("--out", options->out, "The folder of the search, new")
+                               ->check(not_empty())
+                               ->type_name("FOLDER")
+                               ->capture_default_str();
+  command->add_option("--resume", options->resume, "Go on with a search; takes none of the options above")
+      ->check(not_empty())
+      ->type_name("FOLDER")
+      ->excludes(rounds)
+      ->excludes(episodes)
+      ->excludes(train_maps)
+      ->excludes(validation_maps)
+      ->excludes(seed)
+      ->excludes(out);
+  command->add_flag("--json", options->json, "Print one JSON document");
+  add_threads_option(*command);
+  command->callback([options] { tune(*options); });
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,262 @@
+#include "graphdrl/train/tuning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/env/load_worlds.h"
+#include "graphdrl/env/world_families.h"
+#include "graphdrl/eval/comparison.h"
+#include "graphdrl/io/ascii_map.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
+
+namespace graphdrl {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kMany = "many";
+constexpr int kSide = 5;               // of the maps, as the paper's
+constexpr std::uint64_t kPurpose = 7;  // of the random numbers that draw settings
+constexpr int kMostRuns = 100'000;
+
+// What a setting draws from; the paper's value among each. Around the paper's, about three times as much or as little.
+const std::vector<std::pair<const char*, std::vector<Json>>>& search_space() {
+  static const std::vector<std::pair<const char*, std::vector<Json>>> space = {
+      {"learning_rate", {1e-4, 3e-4, 1e-3, 3e-3}},
+      {"discount", {0.9, 0.95, 0.99, 0.999}},
+      {"soft_update", {3e-4, 1e-3, 3e-3, 1e-2, 1e-1}},
+      {"dropout", {0.0, 0.2, 0.5}},
+      {"batch_size", {16, 32, 64}},
+      {"reward", {"visit_penalty", "coverage_gain"}},
+      {"maps", {"paper:a", kMany}},
+  };
+  return space;
+}
+
+// The value that the paper's setting has.
+Json paper_value(const std::string& option) {
+  if (option == "maps") return "paper:a";
+  return config_json(default_options(kPaperPreset))[option];
+}
+
+std::vector<Setting> draw_settings(int count, std::uint64_t seed) {
+  Rng rng(derive_seed(seed, kPurpose));
+  std::vector<Setting> settings = {Setting::object()};
+  std::size_t all = 1;
+  for (const auto& [option, values] : search_space()) all *= values.size();
+  while (std::ssize(settings) < count && settings.size() < all) {
+    Setting setting = Setting::object();
+    for (const auto& [option, values] : search_space()) {
+      const Json& value = values[rng.below(static_cast<std::uint32_t>(values.size()))];
+      if (value != paper_value(option)) setting[option] = value;
+    }
+    if (std::find(settings.begin(), settings.end(), setting) == settings.end()) settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
+std::filesystem::path tune_file(const std::filesystem::path& folder) {
+  return folder / "tune.json";
+}
+
+// Writes maps of a split, none of them one that is in `taken`, which they join.
+void write_maps(const std::filesystem::path& folder, Split split, int count, std::set<std::vector<bool>>& taken) {
+  prepare_folder(folder);
+  for (int index = 0, written = 0; written < count; ++index) {
+    const World world = split_world({.family = "obstacles", .size = kSide}, split, index);
+    if (!taken.insert(world.map()->blocked).second) continue;
+    write_file(folder / fmt::format("map-{:03}.txt", written++), format_ascii_map(*world.map()));
+  }
+}
+
+TrainOptions options_of(const TuneOptions& options, const Setting& setting, const std::filesystem::path& train_maps) {
+  Json json = {{"preset", kPaperPreset}, {"episodes", options.episodes}};
+  json.update(setting);
+  if (setting.contains("maps")) json["maps"] = {train_maps.string()};
+  return parse_options(json, "tune");
+}
+
+Json to_json(const TuneOptions& options) {
+  Json rounds = Json::array();
+  for (const TuneRound& round : options.rounds) rounds.push_back({round.settings, round.seeds});
+  return {{"rounds", rounds},
+          {"episodes", options.episodes},
+          {"train_maps", options.train_maps},
+          {"validation_maps", options.validation_maps},
+          {"seed", options.seed}};
+}
+
+}  // namespace
+
+std::vector<TuneRound> parse_rounds(const std::string& text) {
+  const auto refuse = [&] {
+    throw Error({.what = "bad rounds",
+                 .expected = "settings by seeds, ever fewer settings, as 30x2,6x8",
+                 .got = in_quotes(text, 200),
+                 .where = "--rounds"});
+  };
+  const char* next = text.data();
+  const char* const end = next + text.size();
+  const auto number = [&] {
+    int value = 0;
+    const auto [after, error] = std::from_chars(next, end, value);
+    if (error != std::errc() || value < 1 || value > kMostRuns) refuse();
+    next = after;
+    return value;
+  };
+  std::vector<TuneRound> rounds;
+  while (true) {
+    TuneRound round{.settings = number(), .seeds = 0};
+    if (next == end || *next++ != 'x') refuse();
+    round.seeds = number();
+    if (std::int64_t{round.settings} * round.seeds > kMostRuns) refuse();
+    if (!rounds.empty() && round.settings > rounds.back().settings) refuse();
+    rounds.push_back(round);
+    if (next == end) return rounds;
+    if (*next++ != ',') refuse();
+  }
+}
+
+Tuning::Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder,
+               MakePaperLearner make_learner)
+    : options_(std::move(options)),
+      settings_(std::move(settings)),
+      folder_(std::move(folder)),
+      make_learner_(std::move(make_learner)) {}
+
+Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, MakePaperLearner make_learner) {
+  if (std::filesystem::exists(tune_file(folder))) {
+    throw Error({.what = "the folder holds a search already",
+                 .expected = "a new folder, or --resume to go on with it",
+                 .where = folder.string()});
+  }
+  options_of(options, Setting::object(), "");  // refuses what all would
+  std::set<std::vector<bool>> taken;
+  for (const World& world : load_worlds({"paper"})) taken.insert(world.map()->blocked);
+  write_maps(folder / "maps" / "validation", Split::kValidation, options.validation_maps, taken);
+  write_maps(folder / "maps" / "train", Split::kTrain, options.train_maps, taken);
+  Tuning tuning(options, draw_settings(options.rounds.front().settings, options.seed), std::move(folder),
+                std::move(make_learner));
+  const Json json = {{"options", to_json(options)}, {"settings", tuning.settings_}};
+  write_file(tune_file(tuning.folder_), json.dump(2) + '\n');
+  return tuning;
+}
+
+Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learner) {
+  const std::string source = tune_file(folder).string();
+  const std::string text = read_file(source);
+  require_shallow_json(text, source);
+  try {
+    const Json json = Json::parse(text);
+    const Json& given = json.at("options");
+    TuneOptions options{.rounds = {},
+                        .episodes = given.at("episodes"),
+                        .train_maps = given.at("train_maps"),
+                        .validation_maps = given.at("validation_maps"),
+                        .seed = given.at("seed")};
+    std::string rounds;
+    for (const Json& round : given.at("rounds")) {
+      rounds += fmt::format("{}{}x{}", rounds.empty() ? "" : ",", round.at(0).get<int>(), round.at(1).get<int>());
+    }
+    options.rounds = parse_rounds(rounds);
+    std::vector<Setting> settings = json.at("settings").get<std::vector<Setting>>();
+    if (settings.empty() || settings.front() != Setting::object()) {
+      throw Error({.what = "the first setting is not the paper's", .where = source});
+    }
+    for (const Setting& setting : settings) options_of(options, setting, folder / "maps" / "train");
+    return {std::move(options), std::move(settings), std::move(folder), std::move(make_learner)};
+  } catch (const Json::exception& error) {
+    throw Error(
+        {.what = fmt::format("not a search for hyper-parameters ({})", escaped(error.what())), .where = source});
+  }
+}
+
+// The paper's, then the others: all of them, or the best of the round before.
+std::vector<std::size_t> Tuning::settings_of(std::size_t round) const {
+  std::vector<std::size_t> chosen = {0};
+  const std::size_t known = round == 0 ? settings_.size() : scores_[round - 1].settings.size();
+  const std::size_t count = std::min(known, static_cast<std::size_t>(options_.rounds[round].settings));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t setting = round == 0 ? i : scores_[round - 1].settings[i].setting;
+    if (setting != 0) chosen.push_back(setting);
+  }
+  return chosen;
+}
+
+std::vector<PlannedRun> Tuning::runs_of(std::size_t round) const {
+  std::vector<PlannedRun> runs;
+  for (const std::size_t setting : settings_of(round)) {
+    TrainOptions options = options_of(options_, settings_[setting], folder_ / "maps" / "train");
+    for (int i = 0; i < options_.rounds[round].seeds; ++i) {
+      options.seed = derive_seed(options_.seed, kPurpose, 1 + 1000 * round + static_cast<std::uint64_t>(i));
+      runs.push_back({options, RunDirectory(folder_ / fmt::format("round-{}", round + 1) /
+                                            fmt::format("setting-{:02}", setting) / fmt::format("seed-{}", i + 1))});
+    }
+  }
+  return runs;
+}
+
+bool Tuning::run(const std::function<bool()>& stop,
+                 const std::function<void(std::size_t round, const SideBySideNews&)>& tell) {
+  for (std::size_t round = scores_.size(); round < options_.rounds.size(); ++round) {
+    SideBySide trainings(runs_of(round), make_learner_);
+    if (!trainings.run(stop, [&](const SideBySideNews& news) { tell(round, news); })) return false;
+    scores_.push_back(score(round));
+  }
+  return true;
+}
+
+RoundScores Tuning::score(std::size_t round) const {
+  ComparisonOptions comparison{.policies = {}, .all_starts = true};
+  for (const PlannedRun& run : runs_of(round)) comparison.policies.push_back(run.directory.policy().string());
+  const std::vector<World> worlds = load_worlds({(folder_ / "maps" / "validation").string()});
+  comparison.budget = Budget::parse(default_options(kPaperPreset).budget);
+  const Comparison result = compare(worlds, comparison);
+  const auto seeds = static_cast<std::size_t>(options_.rounds[round].seeds);
+  RoundScores scores;
+  for (const std::size_t setting : settings_of(round)) {
+    SettingScore score{.setting = setting, .by_seed = {}, .over_seeds = {}, .over_paper = 0, .over_paper_errors = {}};
+    for (std::size_t i = 0; i < seeds; ++i) {
+      score.by_seed.push_back(*result.overall[scores.settings.size() * seeds + i].mean);
+    }
+    score.over_seeds = summarise(score.by_seed);
+    const Summary& paper = scores.settings.empty() ? score.over_seeds : scores.settings.front().over_seeds;
+    score.over_paper = score.over_seeds.mean - paper.mean;
+    if (setting != 0 && paper.std) {
+      const double error = std::hypot(*paper.std, *score.over_seeds.std) / std::sqrt(static_cast<double>(seeds));
+      if (error > 0) score.over_paper_errors = score.over_paper / error;
+    }
+    scores.settings.push_back(std::move(score));
+  }
+  std::stable_sort(scores.settings.begin(), scores.settings.end(),
+                   [](const auto& one, const auto& other) { return one.over_seeds.mean > other.over_seeds.mean; });
+  return scores;
+}
+
+std::vector<ValueEffect> Tuning::effects() const {
+  std::vector<ValueEffect> effects;
+  for (const auto& [option, values] : search_space()) {
+    for (const Json& value : values) {
+      std::vector<double> means;
+      for (const SettingScore& score : scores_.front().settings) {
+        if (settings_[score.setting].value(option, paper_value(option)) == value) {
+          means.push_back(score.over_seeds.mean);
+        }
+      }
+      if (means.empty()) continue;
+      effects.push_back({.option = option,
+                         .value = value.is_string() ? value.get<std::string>() : value.dump(),
+                         .over_settings = summarise(means)});
+    }
+  }
+  return effects;
+}
+
+}  // namespace graphdrl

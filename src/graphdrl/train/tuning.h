@@ -1,0 +1,91 @@
+// A search for better hyper-parameters of the preset `paper`, by successive halving [Jamieson and Talwalkar 2016]: many
+// settings by few seeds, then the best of them again, by more and fresh ones.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graphdrl/eval/statistics.h"
+#include "graphdrl/train/side_by_side.h"
+
+namespace graphdrl {
+
+struct TuneRound {
+  int settings;
+  int seeds;  // fresh ones
+};
+
+// "30x2,6x8": 30 settings by 2 seeds, then the best six, and the paper's where it is none of them, by 8 others. Throws
+// Error, naming --rounds, on anything else and where settings become more.
+std::vector<TuneRound> parse_rounds(const std::string& text);
+
+struct TuneOptions {
+  std::vector<TuneRound> rounds;
+  std::int64_t episodes = 400;
+  int train_maps = 64;       // of those settings that train on many
+  int validation_maps = 30;  // none of them one of the paper's or one to train on
+  std::uint64_t seed = 1;    // of the settings drawn and of the trainings
+};
+
+// What a setting changes of the preset, by the options' keys. The first one changes nothing: it is the paper's, and
+// takes part in every round. "maps" is "many" or not there.
+using Setting = nlohmann::ordered_json;
+
+// How good a setting is: mean coverage of the validation maps over all starts, in percent.
+struct SettingScore {
+  std::size_t setting;
+  std::vector<double> by_seed;
+  Summary over_seeds;
+  double over_paper;                        // its mean less that of the paper's setting
+  std::optional<double> over_paper_errors;  // the same, in standard errors of the difference
+};
+struct RoundScores {
+  std::vector<SettingScore> settings;  // the best first
+};
+
+// How the settings of the first round that share a value do.
+struct ValueEffect {
+  std::string option;
+  std::string value;
+  Summary over_settings;
+};
+
+class Tuning {
+ public:
+  // Draws the settings and the maps, and writes FOLDER/tune.json and FOLDER/maps/. Throws Error where the folder holds
+  // a search already.
+  static Tuning start(const TuneOptions& options, std::filesystem::path folder,
+                      MakePaperLearner make_learner = make_paper_cpu_learner);
+  static Tuning resume(std::filesystem::path folder, MakePaperLearner make_learner = make_paper_cpu_learner);
+
+  // All rounds, or until `stop` says so; gives whether it is finished. The runs lie in
+  // FOLDER/round-R/setting-I/seed-S.
+  bool run(const std::function<bool()>& stop,
+           const std::function<void(std::size_t round, const SideBySideNews&)>& tell);
+
+  const TuneOptions& options() const { return options_; }
+  const std::vector<Setting>& settings() const { return settings_; }
+  const std::vector<RoundScores>& scores() const { return scores_; }  // of the rounds that are done
+  std::vector<ValueEffect> effects() const;                           // REQUIRES: the first round is done
+
+ private:
+  Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder,
+         MakePaperLearner make_learner);
+
+  std::vector<std::size_t> settings_of(std::size_t round) const;
+  std::vector<PlannedRun> runs_of(std::size_t round) const;
+  RoundScores score(std::size_t round) const;
+
+  TuneOptions options_;
+  std::vector<Setting> settings_;
+  std::filesystem::path folder_;
+  MakePaperLearner make_learner_;
+  std::vector<RoundScores> scores_;
+};
+
+}  // namespace graphdrl
