@@ -16,6 +16,7 @@ class GridEpisodes final : public Episodes {
   GridEpisodes(const Setting& setting, int count, bool restarts, int cells)
       : Episodes(setting, count, restarts, static_cast<std::size_t>(cells) * kPaperFeatureCount, kActions),
         encoders_(static_cast<std::size_t>(count)) {
+    for (int i = 0; i < count; ++i) std::ranges::fill(mask_of(i), true);  // directions are never masked
     if (!setting.world) return;
     const auto encoder = std::make_shared<const PaperFeatureEncoder>(*setting.world);
     std::fill(encoders_.begin(), encoders_.end(), encoder);

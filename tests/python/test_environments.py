@@ -104,6 +104,14 @@ def test_steps_are_the_papers(name, full_coverage):
             expected = plain.reset(divmod(info["position"], 5))
 
 
+def test_no_direction_is_masked():
+    assert gymnasium.make(GRID).unwrapped.action_masks().tolist() == [True] * 4
+    envs = gymnasium.make_vec(GRID, num_envs=2)
+    envs.reset(seed=1)
+    envs.step(np.zeros(2, np.int64))
+    assert envs.unwrapped.action_masks().tolist() == [[True] * 4] * 2
+
+
 def test_full_coverage_terminates_with_a_bonus():
     env = gymnasium.make(GRID, map=graphdrl.World.from_grid(".."), budget=9, end_at_full_coverage=True, start=(0, 0))
     env.reset()
