@@ -151,10 +151,10 @@ void run_planning(const nb::object& on_progress, const std::function<void(const 
 }
 
 void bind_callbacks(nb::module_& module) {
-  nb::class_<State>(
-      module, "State",
-      "What a policy sees: node numbers and costs. One that a policy is given holds for that call; one of "
-      "World.state() lasts.")
+  nb::class_<State>(module, "State",
+                    "What a policy sees: a walk under way. Nodes are numbers.\n\nOne that a policy is given holds for "
+                    "that call; after "
+                    "it, every property raises Error. One of `World.state` lasts.")
       .def(
           "__init__",
           [](State* self, const World& world, const InArray<std::int64_t, nb::ndim<1>>& walk, const std::string& budget,
@@ -168,26 +168,29 @@ void bind_callbacks(nb::module_& module) {
           },
           nb::arg("world"), nb::arg("walk"), nb::arg("budget"), nb::arg("end").none())
       .def_prop_ro(
-          "position", [](const State& state) { return state.get().position; }, "The node it stands on.")
+          "position", [](const State& state) { return state.get().position; }, "The number of the current node.")
       .def_prop_ro(
           "moves", [](const State& state) { return moves_of(state.get()); },
-          "The nodes that one step leads to, and that can be paid for.")
+          "The numbers of the nodes that one step leads to, and that can be paid for, a list.")
       .def_prop_ro(
           "visits",
           [](const State& state) {
             return to_numpy(std::vector(state.get().visits.begin(), state.get().visits.end()));
           },
-          nb::rv_policy::automatic, "How often each node was visited. Shape [N], uint32.")
+          nb::rv_policy::automatic, "How often each node was visited, a copy. Shape [N], uint32.")
       .def_prop_ro(
           "walk",
           [](const State& state) { return to_numpy(std::vector(state.get().walk.begin(), state.get().walk.end())); },
-          nb::rv_policy::automatic, "Every position so far, the start first. Shape [steps + 1], int32.")
+          nb::rv_policy::automatic, "Every position so far, the start first, a copy. Shape [steps + 1], int32.")
       .def_prop_ro(
-          "visited_count", [](const State& state) { return state.get().visited_count; }, "How many nodes are visited.")
+          "visited_count", [](const State& state) { return state.get().visited_count; },
+          "How many different nodes are visited, the start included.")
       .def_prop_ro(
-          "budget", [](const State& state) { return state.get().budget; }, "Of the whole walk, in units of cost.")
+          "budget", [](const State& state) { return state.get().budget; },
+          "What the whole walk may cost, in units of cost.")
       .def_prop_ro(
-          "spent", [](const State& state) { return state.get().spent; }, "Of the budget.");
+          "spent", [](const State& state) { return state.get().spent; },
+          "What the walk has cost so far, in units of cost.");
 }
 
 }  // namespace graphdrl::python

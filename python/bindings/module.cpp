@@ -22,7 +22,7 @@ NB_MODULE(_core, module) {
   module.doc() = "The extension behind the package graphdrl.";
   module.attr("__version__") = GRAPHDRL_VERSION;
   nb::exception<Error>(module, "Error", PyExc_ValueError).doc() =
-      "What a caller can get wrong: an argument, a file. Its text is one line.";
+      "What a caller can get wrong: an argument, a file. A ValueError whose text is one line.";
   module.def(
       "set_threads",
       [](int count) {
@@ -31,7 +31,8 @@ NB_MODULE(_core, module) {
         }
         set_threads(count);
       },
-      nb::arg("count"), "How many threads one call may use; 1 at first. Results do not depend on it.");
+      nb::arg("count"),
+      "Sets how many threads one call may use: 1 to 1024, 1 at first. Results do not depend on it. Raises Error.");
   module.def("threads", &threads, "How many threads one call may use.");
   bind_worlds(module);
   bind_callbacks(module);

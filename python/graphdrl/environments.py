@@ -19,9 +19,24 @@ from . import _core
 from ._core import Error
 from .world import Budget, Node, World, budget_text, shown
 
+__all__ = [
+    "FIRST_VISIT_ID",
+    "GRAPH_ID",
+    "GRID_ID",
+    "FirstVisitEnv",
+    "FirstVisitVectorEnv",
+    "GraphEnv",
+    "GraphVectorEnv",
+    "GridEnv",
+    "GridVectorEnv",
+]
+
 GRID_ID = "GraphDRL/Grid-v0"
+"""What `gymnasium.make` and `make_vec` know GridEnv and GridVectorEnv by."""
 GRAPH_ID = "GraphDRL/Graph-v0"
+"""The same of GraphEnv and GraphVectorEnv."""
 FIRST_VISIT_ID = "GraphDRL/FirstVisit-v0"
+"""The same of FirstVisitEnv and FirstVisitVectorEnv."""
 
 _REWARDS = ("visit_penalty", "coverage_gain")
 _OBSERVATIONS = ("flat", "graph")
@@ -198,15 +213,27 @@ class _Env(gymnasium.Env[Any, np.int64]):
 
     @property
     def world(self) -> World:
-        """The world of the episode."""
+        """The world of the episode. Of random worlds, raises Error before the first `reset`."""
         return self._kind.world(0)
 
     @property
     def walk(self) -> list[Node]:
-        """Every node of the episode so far, the start first, as the world calls them."""
+        """Every position of the episode so far, the start first, as the world calls the nodes."""
         return self.world.names(self._kind.episodes.walk(0))
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode.
+
+        Args:
+            seed: of starts and random worlds, of this episode and those after it.
+            options: `{"start": node}` says where this episode begins.
+
+        Returns:
+            The observation, and the infos of `step`.
+
+        Raises:
+            Error: a blocked or missing start, a start for random worlds.
+        """
         super().reset(seed=seed)
         if seed is not None or not self._begun:
             self._kind.seed(0, self.np_random)
@@ -217,6 +244,18 @@ class _Env(gymnasium.Env[Any, np.int64]):
         return self._observation(), self._info()
 
     def step(self, action: int | np.int64) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Takes an action.
+
+        Args:
+            action: from 0 up.
+
+        Returns:
+            Observation, reward, whether the episode is terminated, whether it is truncated, and infos. Infos are
+            `visited`, how many nodes; `position`, the number of the current one; and those that the class adds.
+
+        Raises:
+            Error: no such action, an episode that is over or has not begun.
+        """
         episodes = self._kind.episodes
         episodes.step(np.array([action], np.int64))
         if self.render_mode == "human":
@@ -225,10 +264,23 @@ class _Env(gymnasium.Env[Any, np.int64]):
         return self._observation(), float(episodes.rewards[0]), *over, self._info()
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Which actions may be taken, [actions]: for MaskablePPO of sb3-contrib."""
+        """Which actions may be taken, where sb3-contrib's MaskablePPO looks for them. Shape [A], bool.
+
+        Of a GridEnv all may, so all are true.
+        """
         return self._kind.episodes.action_masks[0].copy()
 
     def render(self) -> Any:
+        """Shows the episode as `render_mode` says.
+
+        Returns:
+            A text of `ansi`, a picture [height, width, 3], uint8, of `rgb_array`; None of `human`, which opens a
+            window.
+
+        Raises:
+            Error: no episode has begun.
+            gymnasium.error.DependencyNotInstalled: `human` without pygame.
+        """
         if self.render_mode is None:
             return None
         if not self._begun:
@@ -245,6 +297,7 @@ class _Env(gymnasium.Env[Any, np.int64]):
         return None
 
     def close(self) -> None:
+        """Closes the window of `render_mode="human"`."""
         if self._window is not None:
             self._window.close()
             self._window = None
@@ -299,6 +352,18 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begins an episode in every environment. V: how many environments, F: numbers of an observation.
+
+        Args:
+            seed: one for each; or one, and the others follow it.
+            options: `{"start": node}`; `{"reset_mask": array}`, [V], bool: which environments, by default all.
+
+        Returns:
+            Observations [V, F], float32, and the infos of `step`.
+
+        Raises:
+            Error: a number of seeds other than V, a blocked or missing start, a start for random worlds.
+        """
         if isinstance(seed, (int, np.integer)):
             seeds: list[int | None] = [int(seed) + i for i in range(self.num_envs)]
         else:
@@ -317,16 +382,32 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
     def step(
         self, actions: NDArray[np.int64]
     ) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Takes an action in every environment. Where an episode is over, begins the next instead, for no reward.
+
+        Args:
+            actions: [V], from 0 up.
+
+        Returns:
+            Observations [V, F], rewards [V], terminated [V], truncated [V], and infos, arrays of V rows by the names
+            of the single environment's.
+
+        Raises:
+            Error: a number of actions other than V, no such action.
+        """
         self._kind.episodes.step(np.ascontiguousarray(actions, np.int64))
         rewards, terminated, truncated = self._outcome
         return self._observations(), rewards.copy(), terminated.copy(), truncated.copy(), self._infos()
 
     def world(self, index: int = 0) -> World:
-        """The world of one of the episodes."""
+        """The world of an episode.
+
+        Args:
+            index: of the environment, from 0 up.
+        """
         return self._kind.world(index)
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Which actions may be taken, [environments, actions]."""
+        """Which actions may be taken. Shape [V, A], bool."""
         return self._kind.episodes.action_masks.copy()
 
     def _observations(self) -> NDArray[np.float32]:
@@ -341,21 +422,33 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
 
 
 class GridEnv(_Env):
-    """One explorer on a grid map, as in the paper: visit as many cells as the budget allows.
+    """One explorer on a grid map, as in the paper: visit as many cells as the budget allows. N: how many cells.
 
     Actions: 0 left, 1 up, 2 right, 3 down. A move into an obstacle or off the map costs a step and stays put.
 
-    Observation: Box [7 N] of float32, the paper's features of each cell, one cell after the other by rows: row, column,
-    obstacle, visits, wall, unvisited neighbours, current. `observation.reshape(-1, 7)` is the matrix of the paper.
+    Observation: Box [7 N] of float32, the features of each cell [paper, section 2.1], one cell after the other by rows:
+    row, column, obstacle, visits, wall, unvisited neighbours, current. `observation.reshape(-1, 7)` has a row per cell.
 
-    Reward: `visit_penalty` (eq. 3): 0.1 for a new cell, -0.1 times the visits before of another, -0.5 for a blocked
-    move; or `coverage_gain` (eq. 2). An episode is truncated where the budget is spent. It terminates at full coverage,
-    with a bonus of 1, where `end_at_full_coverage`, which the paper's author's code does and the paper does not.
+    Reward `visit_penalty` [paper, eq. 3]: 0.1 for a new cell, -0.1 times the visits before of another, -0.5 for a
+    blocked move. Reward `coverage_gain` [paper, eq. 2]: the share of the free cells that a first visit adds.
 
-    map: a World or the name of a map, by default `paper:a`; or instead a family of random worlds and the side of their
-    squares, drawn anew with every reset. budget: steps, or text as "1.1x". It begins at `start`, else at a random free
-    cell; `reset(options={"start": cell})` says otherwise for one episode. Infos: `visited`, how many cells, and
-    `position`, the number of the current one.
+    An episode is truncated where the budget is spent.
+
+    Args:
+        map: a World or the name of a map; by default `paper:a`.
+        budget: steps, or a text as `"1.1x"`.
+        reward: `visit_penalty` or `coverage_gain`.
+        end_at_full_coverage: an episode terminates at full coverage, with a bonus of 1. Differs from the paper: its
+            author's code does so.
+        punish_blocked_by_visits: a blocked move costs a further 0.1 per visit of the cell before it, with
+            `visit_penalty`. Differs from the paper: its author's code does so.
+        start: a cell; by default a random free one.
+        family: of random worlds instead of `map`, a new one with every `reset`: a family of grids.
+        size: of random worlds: cells a side.
+        render_mode: `ansi`, `rgb_array` or `human`.
+
+    Raises:
+        Error: a map that is no grid, a family of graphs, both a map and a family, a bad value of another option.
     """
 
     def __init__(
@@ -378,7 +471,17 @@ class GridEnv(_Env):
 
 
 class GridVectorEnv(_VectorEnv):
-    """Many environments as GridEnv, with its options; `gymnasium.make_vec(id, num_envs)` makes it."""
+    """Many environments as GridEnv, with its options; `gymnasium.make_vec(id, num_envs)` makes it.
+
+    All episodes are stepped by one call. Steps equal those of Gymnasium's SyncVectorEnv with the same seeds.
+
+    Args:
+        num_envs: V, how many.
+        copy: if false, observations are one array that every step writes anew. All else is always a copy.
+
+    Raises:
+        Error: as GridEnv does.
+    """
 
     def __init__(
         self,
@@ -401,24 +504,43 @@ class GridVectorEnv(_VectorEnv):
 
 
 class GraphEnv(_Env):
-    """One explorer on any graph: visit as much as the budget allows, edge by edge.
+    """One explorer on any graph: visit as much as the budget allows, edge by edge. N: nodes, A: actions.
 
-    Actions: the neighbours of the current node, in ascending order of their numbers. A masked action, one that leads
-    nowhere or cannot be paid for, costs an edge of mean cost and stays put; where that cannot be paid for, it ends the
-    episode. Masks: `info["action_mask"]` and `action_masks()`; `info["targets"]`: where actions lead, -1 for nowhere.
+    Actions: the neighbours of the current node, in ascending order of their numbers. A masked action leads nowhere or
+    cannot be paid for. It costs an edge of mean cost and stays put; where that cannot be paid for, it ends the episode.
+
+    Infos: `action_mask`, bool [A]; `targets`, int [A], the number of the node that each action leads to, -1 for
+    nowhere.
 
     Observation `flat`: Box [4 N + 5 A + 2] of float32 from 0 to 1: of each node open, visited, current, prize (in eight
     mean prizes); of each action legal, visited, cost (in eight mean edges), prize, unvisited neighbours there (in
-    eight); the budget left and the nodes visited, as shares. `graph`: spaces.Graph, a row for each node (open, visited,
-    current, prize, one legal step away, budget left), edges both ways with their cost in mean edges.
+    eight); the budget left and the nodes visited, as shares.
 
-    Reward: `visit_penalty` (eq. 3; a masked action is a blocked move) or `coverage_gain` (eq. 2: the share of all
-    nodes, or of all prizes, that a first visit brings). An episode terminates where nothing can be paid for, or
-    everything is visited: the budget is seen, so that is the process's own end.
+    Observation `graph`: spaces.Graph of a row [6] for each node: open, visited, current, prize, one legal step away,
+    budget left; and edges both ways, with their cost in mean edges, [1].
 
-    map, family, size, budget, start: as of GridEnv; families of graphs may be `weighted` and `directed`.
-    return_to_start: the walk must end where it began; moves that make that too dear are masked. max_neighbours: A, how
-    many actions there are; by default as many as the map needs, of random graphs size - 1.
+    Reward: `visit_penalty` [paper, eq. 3], where a masked action is a blocked move; or `coverage_gain` [paper, eq. 2]:
+    the share of all nodes, or of all prizes, that a first visit brings.
+
+    An episode terminates where nothing can be paid for, or everything is visited. It is never truncated, for what is
+    left of the budget is part of the observation.
+
+    Args:
+        map: as of GridEnv; any World.
+        budget: in units of cost, or a text as `"1.1x"`.
+        reward: `visit_penalty` or `coverage_gain`.
+        start: a node; by default a random free one.
+        return_to_start: the walk must end where it began. Moves that make that too dear are masked.
+        family: of random worlds instead of `map`, a new one with every `reset`.
+        size: of random worlds: nodes of a graph, cells a side of a grid.
+        weighted: of random graphs: edges cost differently.
+        directed: of random graphs: three edges in ten lead one way only.
+        max_neighbours: A; by default what the map needs, of random grids 4, of random graphs `size` - 1.
+        observation: `flat` or `graph`.
+        render_mode: `ansi`, `rgb_array` or `human`.
+
+    Raises:
+        Error: both a map and a family, a node of more neighbours than A, a bad value of another option.
     """
 
     def __init__(
@@ -444,7 +566,15 @@ class GraphEnv(_Env):
 
 
 class GraphVectorEnv(_VectorEnv):
-    """Many environments as GraphEnv, with its options and flat observations."""
+    """Many environments as GraphEnv, with its options and flat observations; see GridVectorEnv.
+
+    Args:
+        num_envs: V, how many.
+        copy: as of GridVectorEnv.
+
+    Raises:
+        Error: as GraphEnv does.
+    """
 
     def __init__(
         self,
@@ -469,20 +599,37 @@ class GraphVectorEnv(_VectorEnv):
 
 
 class FirstVisitEnv(_Env):
-    """One explorer on any graph, from first visit to first visit.
+    """One explorer on any graph, from first visit to first visit. A: actions.
 
     An action walks to an unvisited node next to visited ones, by the cheapest way through visited ground.
 
-    Actions: the `max_visits` nearest first visits, nearest first. Masks and targets as of GraphEnv; masked actions cost
-    what they cost there.
+    Actions: the A nearest first visits, nearest first. Infos as of GraphEnv; masked actions cost what they cost there.
 
-    Observation `flat`: Box [12 max_visits] of float32 from -16 to 16: of each action 1 where there is one, and what the
-    explorer sees of it (docs/explorer.md). `graph`: spaces.Graph of the nodes around the current one, with what the
-    explorer sees of each, edges both ways with their cost in mean edges; `info["target_rows"]`: the row of each
-    action's target, -1 where there is none.
+    Observation `flat`: Box [12 A] of float32 from -16 to 16: of each action 1 where there is one, and what the explorer
+    sees of it, 11 features (docs/explorer.md).
 
-    Reward: the sum over the walk of GraphEnv's. An episode terminates where no first visit can be paid for. The options
-    are those of GraphEnv.
+    Observation `graph`: spaces.Graph of the nodes around the current one, with what the explorer sees of each, [20];
+    and edges both ways, with their cost in mean edges, [1]. `info["target_rows"]`, int [A]: the row of each action's
+    target, -1 where there is none.
+
+    Reward: the sum over the walk of GraphEnv's. An episode terminates where no first visit can be paid for.
+
+    Args:
+        map: as of GraphEnv.
+        budget: as of GraphEnv.
+        reward: as of GraphEnv.
+        start: as of GraphEnv.
+        return_to_start: as of GraphEnv.
+        family: as of GraphEnv.
+        size: as of GraphEnv.
+        weighted: as of GraphEnv.
+        directed: as of GraphEnv.
+        max_visits: A, 1 to 96.
+        observation: `flat` or `graph`.
+        render_mode: `ansi`, `rgb_array` or `human`.
+
+    Raises:
+        Error: as GraphEnv does, and `max_visits` out of range.
     """
 
     def __init__(
@@ -508,7 +655,15 @@ class FirstVisitEnv(_Env):
 
 
 class FirstVisitVectorEnv(_VectorEnv):
-    """Many environments as FirstVisitEnv, with its options and flat observations."""
+    """Many environments as FirstVisitEnv, with its options and flat observations; see GridVectorEnv.
+
+    Args:
+        num_envs: V, how many.
+        copy: as of GridVectorEnv.
+
+    Raises:
+        Error: as FirstVisitEnv does.
+    """
 
     def __init__(
         self,

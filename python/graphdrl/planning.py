@@ -19,7 +19,7 @@ OwnPolicy = Callable[[_core.State], int | None]
 
 
 class Plan:
-    """One walk, and how far from the best it may be."""
+    """One walk, and how far from the best it may be. `plan` makes it; it does not change."""
 
     __slots__ = ("_core", "world")
 
@@ -29,54 +29,57 @@ class Plan:
 
     @property
     def walk(self) -> list[Node]:
-        """Every step, the start first, in the caller's own labels."""
+        """Every position, the start first, as the world calls the nodes."""
         return self.world.names(self.nodes)
 
     @property
     def nodes(self) -> NDArray[np.int32]:
-        """The same as numbers. Shape [steps + 1]."""
+        """The walk as numbers of nodes. Shape [steps + 1]."""
         return self._core.walk
 
     @property
     def costs(self) -> NDArray[np.float64]:
-        """What was spent at every step. Shape [steps + 1]."""
+        """What is spent at each position, in units of cost. Shape [steps + 1]."""
         return self._core.costs
 
     @property
     def visited(self) -> int:
-        """How many nodes it visits, the start included."""
+        """How many different nodes the walk visits, the start included."""
         return self._core.visited
 
     @property
     def coverage(self) -> float:
-        """Of all nodes that are not blocked, a fraction."""
+        """The share of the free nodes that is visited, 0 to 1 [paper, eq. 1]."""
         return self.visited / self.world.valid_count
 
     @property
     def prize(self) -> float:
-        """Of all nodes visited; their number where there are no prizes."""
+        """The sum of the prizes of the nodes visited; their number where there are no prizes."""
         return self._core.prize
 
     @property
     def cost(self) -> float:
+        """What the walk costs, in units of cost."""
         return self._core.cost
 
     @property
     def budget(self) -> float:
+        """What it could have cost, in units of cost."""
         return self._core.budget
 
     @property
     def bound(self) -> float:
-        """No walk has a higher prize."""
+        """No walk within the budget has a higher prize (docs/search.md, "Bounds")."""
         return self._core.bound
 
     @property
     def optimal(self) -> bool:
-        """Whether that is proved of this one."""
+        """Whether it is proved that no walk has a higher prize than this one."""
         return self._core.optimal
 
     @property
     def policy(self) -> str:
+        """The name of the policy that made it."""
         return self._core.policy
 
     @property
@@ -85,7 +88,15 @@ class Plan:
         return self._core.elapsed_s
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the plan in the format of the ending: as `graphdrl plan --out`."""
+        """Writes the plan in the format of the ending, as `graphdrl plan --out`.
+
+        Args:
+            path: ends with .json, .csv, .graphml, .dot, .geojson, .yaml, .anim.svg, .svg, .png or .html.
+
+        Raises:
+            Error: an ending that is not known, or needs coordinates that the world lacks; a file that cannot be
+                written.
+        """
         self._core.save(os.fspath(path))
 
     def to_json(self) -> str:
@@ -93,6 +104,7 @@ class Plan:
         return self._core.json()
 
     def to_dict(self) -> dict[str, Any]:
+        """The same document as a dictionary."""
         return json.loads(self.to_json())
 
     def _repr_svg_(self) -> str:
@@ -157,15 +169,23 @@ def plan(
     seed: int = 1,
     on_progress: OnProgress | None = None,
 ) -> Plan:
-    """Plans one walk that visits as much as it can within the budget.
+    """Plans one walk that visits as much as it can within the budget. Source: docs/search.md.
 
-    budget: in units of cost, or a text as "1.1x", a multiple of the nodes; where it is None, that of the world's file.
-    start: a node; by default the file's, else the first one that is not blocked. end: a node, "start" or "anywhere";
-    by default the file's, else anywhere. policy: a name as of `graphdrl plan --policy`, a `Policy`, or a callable as
-    `evaluate` takes. time_limit: seconds for all of it. seed: of the search. on_progress(visited, bound): called now
-    and then.
+    Other threads go on meanwhile, with plans of their own. Ctrl-C ends it.
 
-    Other threads go on meanwhile, with plans of their own. Ctrl-C ends it. Raises Error.
+    Args:
+        world: where to walk.
+        budget: in units of cost, or a text as `"1.1x"`; None for that of the world's file.
+        start: a node; by default the file's, else the first free one.
+        end: a node, `"start"` or `"anywhere"`; by default the file's, else anywhere.
+        policy: a name as of `graphdrl plan --policy`, a Policy, or a callable as `evaluate` takes.
+        time_limit: seconds for all of it. Without one, the same arguments give the same walk.
+        seed: of the search, and of random policies.
+        on_progress: called now and then with the nodes visited so far and the bound.
+
+    Raises:
+        Error: a blocked or missing node, a bad budget or policy, an end out of reach. What `on_progress` and a policy
+            of your own raise comes out as it is.
     """
     core = _require_world(world)._core
     if budget is None:
@@ -187,7 +207,18 @@ def upper_bound(
     *,
     time_limit: float | None = None,
 ) -> float:
-    """What no walk's prize exceeds: nodes, where there are no prizes. Raises Error."""
+    """What no walk's prize exceeds: a number of nodes, where there are no prizes. Source: docs/search.md, "Bounds".
+
+    Args:
+        world: where to walk.
+        budget: in units of cost, or a text as `"1.1x"`.
+        start: as of `plan`.
+        end: as of `plan`.
+        time_limit: seconds, 0 to 1,000,000. Without one, the same arguments give the same bound.
+
+    Raises:
+        Error: a blocked or missing node, a bad budget or time limit.
+    """
     if time_limit is not None and not 0 <= time_limit <= 1e6:
         raise Error(f"bad time limit: expected 0 to 1000000 seconds, got {shown(time_limit)}")
     first, last = _numbers(_require_world(world), start, end)
@@ -204,11 +235,25 @@ def evaluate(
     all_starts: bool = False,
     seed: int = 1,
 ) -> list[dict[str, Any]]:
-    """Compares policies on worlds; rows for `pandas.DataFrame`, coverages in percent, as `graphdrl evaluate --json`.
+    """Compares policies on worlds, as `graphdrl evaluate`. Every policy has the same starts.
 
-    A policy is a name, as on the command line, a `Policy`, or a callable of your own: it gets a `State` and gives the
-    number of the node to go to, one of `state.moves`, or None to stop. Every policy has the same starts: each node once
-    with `all_starts`, else the file's or random ones. Raises Error, and what your policy raises.
+    Args:
+        worlds: one or more.
+        policies: one or more: a name as of `graphdrl plan --policy`, a Policy, or a callable. A callable gets a State
+            and gives the number of the node to go to, one of `state.moves`, or None to stop.
+        budget: in units of cost, or a text as `"1.1x"`; None for that of each world's file.
+        end: as `graphdrl evaluate --end`: `anywhere`, `start` or a node; by default the file's, else anywhere.
+        episodes: walks of each policy on each world, where `all_starts` is false.
+        all_starts: walk from each free node once.
+        seed: of the starts, the search and random policies.
+
+    Returns:
+        Rows for `pandas.DataFrame`, with `map`, `policy`, `valid_nodes`, `budget`, `episodes`; and in percent of the
+        free nodes, or of all prizes, `mean`, `std`, `best`, `ci95_low`, `ci95_high`, `optimum`, `paper`, None where
+        unknown.
+
+    Raises:
+        Error: a bad budget, end or policy. What a policy of your own raises comes out as it is.
     """
     worlds = [worlds] if isinstance(worlds, World) else list(worlds)
     chosen = [policies] if isinstance(policies, (str, Policy)) or callable(policies) else list(policies)

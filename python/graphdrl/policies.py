@@ -16,14 +16,14 @@ from .world import shown
 
 
 class FirstVisits(NamedTuple):
-    """The moves of a state: walks to unvisited nodes next to visited ones, nearest first."""
+    """The moves of a state: walks to unvisited nodes next to visited ones, nearest first. C: how many there are."""
 
     nodes: NDArray[np.int32]
     """Where they lead, numbers of nodes. Shape [C]."""
     costs: NDArray[np.float64]
-    """Of the cheapest way there through visited nodes. Shape [C]."""
+    """Of the cheapest way there through visited nodes, in units of cost. Shape [C]."""
     shortfalls: NDArray[np.float32]
-    """How many nodes the best walk after each falls short of `ceiling`: the lower, the better. Shape [C]."""
+    """How many nodes the best walk after each falls short of `ceiling`. The lowest is the best. Shape [C]."""
     ceiling: float
     """About how many nodes can still be visited."""
     choice: int | None
@@ -37,9 +37,15 @@ class Policy:
     _kind: ClassVar[Any]
 
     def __init__(self, tensors: Mapping[str, ArrayLike], name: str | None = None) -> None:
-        """A network of these tensors, by PyTorch's names: all those of `tensors`, float32, in the same shapes.
+        """A network of these tensors, so that what was trained elsewhere comes in.
 
-        So what was trained elsewhere comes in: a `state_dict()` of PyTorch, say. Raises Error on anything else.
+        Args:
+            tensors: by PyTorch's names, as a `state_dict()`: all those of the property `tensors`, in the same shapes.
+            name: of the policy; by default that of its class.
+
+        Raises:
+            Error: a tensor missing, unknown, of another shape, or with a value that no network can have.
+            TypeError: made of Policy itself.
         """
         if type(self) is Policy:
             raise TypeError("a Policy is an Explorer or a PaperNetwork: Policy.load() finds out which")
@@ -71,7 +77,14 @@ class Policy:
 
     @staticmethod
     def load(path: str | os.PathLike[str] = "explorer") -> Explorer | PaperNetwork:
-        """The policy of a file, or `explorer`, the one in the package. Raises Error."""
+        """The policy of a file.
+
+        Args:
+            path: a policy file, or `explorer`, the one in the package.
+
+        Raises:
+            Error: a file that cannot be read, or is no policy.
+        """
         file = os.fspath(path)
         if file == "explorer":
             return Explorer._of(_core.Explorer.builtin(), file)
@@ -82,27 +95,52 @@ class Policy:
 
     @property
     def tensors(self) -> dict[str, NDArray[np.float32]]:
-        """By PyTorch's names: copies."""
+        """Copies of the tensors, by PyTorch's names, float32."""
         return self._core.tensors
 
     @property
     def parameter_count(self) -> int:
-        """How many numbers are learned."""
+        """How many values are learned."""
         return sum(int(np.prod(shape)) for _, shape, trainable in self._core.specs if trainable)
 
     def inputs(self, states: State | Iterable[State]) -> dict[str, NDArray[Any]]:
-        """States as the ONNX model takes them, joined into one batch: what the network sees, edges, graph of each node.
+        """States as the ONNX model takes them, joined into one batch.
 
-        Shapes and names: docs/python.md, "ONNX".
+        Integers are int64, features float32. B states, N nodes of all their graphs, E edges, C first visits.
+
+        Args:
+            states: one or more.
+
+        Returns:
+            For both networks `edge_index` [2, E], row 0 the sources and row 1 the targets, an undirected edge both
+            ways; and `batch` [N], the state of each node. For a PaperNetwork also `x` [N, 7]. For an Explorer also
+            `node_x` [N, 20]; `current` [B], a row of `node_x`; `visit_x` [C, 11]; `target` [C], a row of `node_x`; and
+            `state` [C].
         """
         return self._core.inputs([states] if isinstance(states, State) else list(states))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes a policy file. Raises Error."""
+        """Writes a policy file (safetensors), which `load` and `graphdrl` read.
+
+        Args:
+            path: the file.
+
+        Raises:
+            Error: a file that cannot be written.
+        """
         self._core.save(os.fspath(path))
 
     def export_onnx(self, path: str | os.PathLike[str]) -> None:
-        """Writes an ONNX model: as `graphdrl export`. Raises Error."""
+        """Writes an ONNX model (opset 16), as `graphdrl export`. Its inputs are those that `inputs` gives.
+
+        Its output is `q` [B, 4] of a PaperNetwork, `shortfall` [C] of an Explorer.
+
+        Args:
+            path: the file.
+
+        Raises:
+            Error: a file that cannot be written.
+        """
         self._core.export_onnx(os.fspath(path))
 
     def __repr__(self) -> str:
@@ -119,19 +157,26 @@ class Policy:
 
 
 class Explorer(Policy):
-    """Scores first visits; works on any graph."""
+    """A network that scores first visits, on any graph. Source: docs/explorer.md."""
 
     __slots__ = ()
     _kind = _core.Explorer
 
     def first_visits(self, state: State) -> FirstVisits:
-        """The first visits of a state, scored: all of them, or those that the network looks at."""
+        """The first visits of a state, scored: all of them, or those in the network's scope.
+
+        Args:
+            state: of any world.
+
+        Raises:
+            Error: a state that is over.
+        """
         nodes, costs, shortfalls, ceiling, choice = self._core.first_visits(state)
         return FirstVisits(nodes, costs, shortfalls, ceiling, None if choice < 0 else choice)
 
 
 class PaperNetwork(Policy):
-    """The paper's Q-network; works on grids, in four directions."""
+    """The paper's Q-network: gated graph convolutions [paper, eq. 7]. Works on grids, in four directions."""
 
     __slots__ = ()
     _kind = _core.PaperNetwork
@@ -155,11 +200,25 @@ class PaperNetwork(Policy):
 
     @classmethod
     def random(cls, seed: int = 0) -> PaperNetwork:
-        """An untrained one, initialised as for a training."""
+        """An untrained network, initialised as PyTorch and PyTorch Geometric do.
+
+        Args:
+            seed: from 0 up.
+        """
         return cls._of(_core.PaperNetwork.random(seed), f"random-{seed}")
 
     def q_values(self, states: State | Iterable[State]) -> NDArray[np.float32]:
-        """Of left, up, right and down. Shape [4] of one state, [B, 4] of many. Raises Error on other than grids."""
+        """What the network expects of each direction: the discounted sum of rewards [paper, eq. 5].
+
+        Args:
+            states: one or more.
+
+        Returns:
+            Of left, up, right and down, float32. Shape [4] of one state, [B, 4] of many.
+
+        Raises:
+            Error: a world that is no grid, a state that is over.
+        """
         if isinstance(states, State):
             return self._core.q_values([states])[0]
         return self._core.q_values(list(states))

@@ -17,26 +17,36 @@ OnMetrics = Callable[[dict[str, Any]], Any]
 
 
 class Run:
-    """What a training left in its folder: a policy, metrics, a checkpoint to go on from."""
+    """What a training left in its folder: a policy, metrics, a checkpoint to go on from.
+
+    Args:
+        path: the folder. Nothing is read until it is asked for.
+        finished: as the attribute.
+    """
 
     def __init__(self, path: str | os.PathLike[str], finished: bool | None = None) -> None:
         self.path = pathlib.Path(path)
+        """The folder."""
         self.finished = finished
         """Whether all is trained; None where this object did not train it."""
 
     @property
     def policy(self) -> Explorer | PaperNetwork:
-        """The policy of the last checkpoint."""
+        """The policy of the last checkpoint. Raises Error where there is none."""
         return Policy.load(self.path / "policy.safetensors")
 
     @property
     def options(self) -> dict[str, Any]:
-        """What it was started with, resolved."""
+        """All options of the training, defaults included. Raises Error where the folder holds none."""
         return json.loads(self._read("config.json"))
 
     @property
     def metrics(self) -> list[dict[str, Any]]:
-        """A row for every ten episodes, or for every round: ready for `pandas.DataFrame`."""
+        """A row for every ten episodes of `paper`, for every round of `explorer`; for `pandas.DataFrame`.
+
+        Of `paper`: `episode`, `steps`, `epsilon`, `loss`, `visited_nodes`, `coverage` (percent), `reward`.
+        Raises Error where the folder holds none.
+        """
         return [json.loads(line) for line in self._read("metrics.jsonl").splitlines()]
 
     def _read(self, name: str) -> str:
@@ -59,10 +69,19 @@ def train(
 ) -> Run:
     """Trains a policy, as `graphdrl train`: the same options and seed give the same bytes.
 
-    out: the folder to write, new. preset: `explorer` or `paper`. maps: of the paper, names, files or worlds. options:
-    those of `graphdrl train --help`, with underscores: `episodes=2000, learning_rate=1e-3, seed=7`.
-    on_metrics(row): called with each row of the metrics; an answer that is true ends the training. Everything is saved
-    whenever it ends, with Ctrl-C too; `resume` goes on. `set_threads` says how many threads it takes. Raises Error.
+    Everything is saved whenever it ends, with Ctrl-C too; `resume` goes on. `set_threads` says how many threads it
+    takes. Source of `paper`: DQN with gated graph networks [paper, algorithm 1]; of `explorer`: docs/explorer.md.
+
+    Args:
+        out: the folder to write, new.
+        preset: `explorer` or `paper`.
+        maps: of `paper`: names, files or worlds; by default the paper's map a.
+        on_metrics: called with each row of the metrics; an answer that is true ends the training.
+        options: those of `graphdrl train --help`, with underscores: `episodes=2000, learning_rate=1e-3, seed=7`.
+
+    Raises:
+        Error: an option that the preset does not have or of a wrong value, a folder that is not new. What `on_metrics`
+            raises comes out as it is.
     """
     worlds: list[World] = []
     if maps is not None:
@@ -80,6 +99,14 @@ def train(
 
 
 def resume(run: str | os.PathLike[str] | Run, *, on_metrics: OnMetrics | None = None) -> Run:
-    """Goes on with a training where it was stopped, to the bytes that it would have ended with. Raises Error."""
+    """Goes on with a training where it was stopped, to the bytes that it would have ended with.
+
+    Args:
+        run: the folder, or what `train` gave.
+        on_metrics: as of `train`.
+
+    Raises:
+        Error: a folder that holds no checkpoint.
+    """
     path = run.path if isinstance(run, Run) else run
     return Run(path, _core.resume(os.fspath(path), on_metrics))

@@ -94,11 +94,20 @@ class World:
         unit: str = "m",
         name: str = "grid",
     ) -> World:
-        """A grid of cells: an array [rows, columns], true (not 0) where blocked; or text, '#' blocked and '.' free.
+        """A grid of cells. Steps lead left, up, right and down, at a cost of 1.
 
-        Row 0 is the upper one. Steps lead left, up, right and down, and with `diagonals` to eight cells, at a cost of
-        √2; they pass blocked corners with `cut_corners`. `cell_size`, in `unit`, and `origin`, the lower left corner of
-        the grid, place it in the plane.
+        Args:
+            cells: an array [rows, columns], true (not 0) where blocked; or text, `#` blocked and `.` free. Row 0 is the
+                upper one.
+            diagonals: steps lead to eight cells; a diagonal one costs √2.
+            cut_corners: diagonal steps may pass blocked cells.
+            cell_size: the side of a cell in `unit`: places the grid in the plane.
+            origin: x and y of the grid's lower left corner, in `unit`.
+            unit: of `cell_size` and `origin`.
+            name: of the world.
+
+        Raises:
+            Error: rows of different lengths, characters other than `#` and `.`, no free cell.
         """
         if isinstance(cells, str):
             cells = cells.split("\n")
@@ -133,10 +142,20 @@ class World:
     ) -> World:
         """A graph from arrays.
 
-        edges: [E, 2], numbers of nodes; loops are left out, of parallel edges the cheapest stays. costs: [E], from 0
-        up; 1 each where there are none. node_count: N; by default one more than the largest. blocked: [N], true
-        where nobody may go. prizes: [N], of first visits; 1 each where there are none. places: [N, 2], x and y
-        upward, in `unit`. labels: N different ones.
+        Args:
+            edges: [E, 2], numbers of nodes. Loops are left out. Of parallel edges the cheapest stays.
+            costs: [E], from 0 up; 1 each by default.
+            node_count: N; by default the number of labels, or one more than the largest node of an edge.
+            directed: edges lead one way, from the first node to the second.
+            blocked: [N], true where no walk may go.
+            prizes: [N], from 0 up, what the first visit of each node is worth; 1 each by default.
+            places: [N, 2], x to the right and y upward, in `unit`; for pictures and files.
+            unit: of `places`: `degrees` for longitude and latitude.
+            labels: N different hashable values; by default the nodes are called by their numbers.
+            name: of the world.
+
+        Raises:
+            Error: an array of another shape or type, a node out of range, a cost or prize below 0.
         """
         ends = _array(edges, np.int64, "edges", "iu")
         if ends.size == 0:
@@ -177,11 +196,20 @@ class World:
         blocked: str = "blocked",
         name: str | None = None,
     ) -> World:
-        """A graph of networkx; the world does not change with it afterwards.
+        """A graph of networkx, of any of its four classes. The world does not change with it afterwards.
 
-        cost: the edges' attribute, by default the first of weight, cost, length and distance that an edge has; 1 where
-        an edge has none. prize: the nodes', by default prize or score. blocked: the nodes' attribute for obstacles.
-        Coordinates are `pos`, or `x` and `y`, or `lon` and `lat`. Of parallel edges the cheapest stays.
+        Coordinates are the nodes' `pos`, or `x` and `y`, or `lon` and `lat`. Of parallel edges the cheapest stays.
+
+        Args:
+            graph: its nodes become the world's labels.
+            cost: the edges' attribute; by default the first of `weight`, `cost`, `length` and `distance` that an edge
+                has. An edge without it costs 1.
+            prize: the nodes' attribute; by default `prize` or `score`. A node without it is worth 1.
+            blocked: the nodes' attribute for obstacles.
+            name: of the world; by default the graph's.
+
+        Raises:
+            Error: a cost, prize or coordinate that is no number, a cost or prize below 0.
         """
         labels = list(graph.nodes)
         numbers = {label: number for number, label in enumerate(labels)}
@@ -205,9 +233,15 @@ class World:
 
     @classmethod
     def from_scipy(cls, matrix: Any, *, directed: bool = True, name: str = "graph") -> World:
-        """A graph from a sparse matrix [N, N] of SciPy: an edge for every entry, which is its cost.
+        """A graph from a sparse matrix of SciPy: an edge for every entry, which is its cost.
 
-        Undirected (`directed=False`): an entry above or below the diagonal is enough.
+        Args:
+            matrix: [N, N], row to column.
+            directed: edges lead one way. If not, an entry above or below the diagonal is enough.
+            name: of the world.
+
+        Raises:
+            Error: a matrix that is not square, an entry below 0.
         """
         entries = matrix.tocoo()
         if entries.ndim != 2 or entries.shape[0] != entries.shape[1]:
@@ -228,9 +262,21 @@ class World:
         connectivity: int = 4,
         cut_corners: bool = False,
     ) -> World:
-        """A map from a file in any format of `graphdrl maps convert --help`, or `paper:a` to `paper:j`.
+        """A map from a file in any format of `graphdrl maps convert --help`. What was left out comes as a warning.
 
-        The options are those of the command line. What a user should know of the reading comes as a warning.
+        Args:
+            path: the file, or `paper:a` to `paper:j`, the paper's maps.
+            cost_attribute: of graphs: the edges' attribute that is their cost.
+            cell_pixels: of pictures: pixels a side of a cell.
+            unknown_is_free: of ROS maps: walks may pass unknown cells.
+            robot_radius: of grids: obstacles grow by this, in the map's unit, or in cells where it has none.
+            cell_size: of grids that say how large their cells are: larger cells, free where all they cover is; in the
+                map's unit.
+            connectivity: of grids: 4 or 8 neighbours of a cell.
+            cut_corners: with 8 neighbours: diagonal steps may pass blocked cells.
+
+        Raises:
+            Error: no such file, a format that is not known, a mistake in it, with file and place.
         """
         core = _core.World.from_file(
             os.fspath(path), cost_attribute, cell_pixels, unknown_is_free, robot_radius, cell_size, connectivity,
@@ -249,14 +295,24 @@ class World:
         directed: bool = False,
         blocked: float | None = None,
     ) -> World:
-        """A connected random world of a family of `graphdrl.FAMILIES`.
+        """A connected random world, as `graphdrl maps generate`. The same arguments give the same world.
 
-        size: the side of a grid, else the number of nodes. blocked: of `obstacles`, the probability of a blocked cell.
+        Args:
+            family: one of `graphdrl.FAMILIES`.
+            size: cells a side of a grid, else nodes.
+            seed: from 0 up.
+            weighted: of graphs: edges cost differently.
+            directed: of graphs: three edges in ten lead one way only.
+            blocked: of `obstacles`: the probability of a blocked cell, 0 to 0.9, instead of a drawn one.
+
+        Raises:
+            Error: no such family; a size, costs or directions that the family does not have.
         """
         return cls(_core.World.random(family, size, seed, weighted, directed, blocked))
 
     @property
     def name(self) -> str:
+        """What it is called in errors, tables and pictures."""
         return self._core.name
 
     @property
@@ -266,27 +322,28 @@ class World:
 
     @property
     def shape(self) -> tuple[int, int] | None:
-        """Rows and columns of a grid."""
+        """Rows and columns of a grid; None of a graph."""
         grid = self._core.grid_state
         return None if grid is None else (grid[0], grid[1])
 
     @property
     def node_count(self) -> int:
-        """Nodes, blocked ones included."""
+        """How many nodes there are, blocked ones included."""
         return self._core.node_count
 
     @property
     def edge_count(self) -> int:
-        """Edges, those of blocked nodes included."""
+        """How many edges there are, those of blocked nodes included."""
         return self._core.edge_count
 
     @property
     def valid_count(self) -> int:
-        """Nodes that are not blocked."""
+        """How many nodes are not blocked."""
         return self._core.valid_count
 
     @property
     def directed(self) -> bool:
+        """Whether edges lead one way."""
         return self._core.directed
 
     @property
@@ -296,7 +353,7 @@ class World:
 
     @property
     def total_prize(self) -> float:
-        """Of all nodes that are not blocked; their number where there are no prizes."""
+        """The prizes of all nodes that are not blocked; their number where there are no prizes."""
         return self._core.total_prize
 
     @property
@@ -306,29 +363,37 @@ class World:
 
     @property
     def blocked(self) -> NDArray[np.bool_]:
-        """[N]; [rows, columns] on a grid."""
+        """Where no walk may go. Shape [N]; [rows, columns] on a grid."""
         flags = self._core.blocked.view(np.bool_)
         return flags if self.shape is None else flags.reshape(self.shape)
 
     @property
     def prizes(self) -> NDArray[np.float64]:
-        """[N], of first visits."""
+        """What the first visit of each node is worth. Shape [N]."""
         prizes = self._core.prizes
         return prizes if len(prizes) else np.ones(self.node_count)
 
     @property
     def places(self) -> NDArray[np.float64] | None:
-        """[N, 2], x and y, where they are known."""
+        """Coordinates, x to the right and y upward; None where they are not known. Shape [N, 2]."""
         places = self._core.places
         return places.reshape(-1, 2) if len(places) else None
 
     def edges(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """The edges [E, 2], numbers of nodes, an undirected one from its lower node; and their costs [E]."""
+        """The edges and their costs.
+
+        Returns:
+            Numbers of nodes, an undirected edge once, from its lower node, shape [E, 2]; and costs, shape [E].
+        """
         ends, costs = self._core.edges
         return ends.reshape(-1, 2), costs
 
     def names(self, numbers: Iterable[int]) -> list[Node]:
-        """What nodes are called, by their numbers."""
+        """What nodes are called, by their numbers: labels, `(row, column)` on a grid, else the numbers.
+
+        Args:
+            numbers: of nodes, from 0 up.
+        """
         if self._labels is not None:
             return [self._labels[number] for number in numbers]
         if self.shape is not None:
@@ -337,7 +402,14 @@ class World:
         return [int(number) for number in numbers]
 
     def number(self, node: Node) -> int:
-        """The number of a node. Raises Error where there is no such node."""
+        """The number of a node.
+
+        Args:
+            node: as the world calls it. A grid knows its cells by number, too.
+
+        Raises:
+            Error: no such node.
+        """
         if self._numbers is not None:
             try:
                 found = self._numbers.get(node)
@@ -358,14 +430,19 @@ class World:
     def state(self, walk: Iterable[Node], budget: Budget, end: Node | None = None) -> _core.State:
         """What a policy sees after a walk: a State that lasts.
 
-        walk: nodes, the start first; on a grid a repeated cell is a blocked move. end: where the walk must end; None
-        for anywhere. Raises Error where the walk cannot be walked.
+        Args:
+            walk: nodes, the start first. On a grid a repeated cell is a blocked move.
+            budget: of the whole walk.
+            end: where the walk must end; None for anywhere.
+
+        Raises:
+            Error: a walk that cannot be walked, or costs more than the budget.
         """
         nodes = np.array([self.number(node) for node in walk], np.int64)
         return _core.State(self._core, nodes, budget_text(budget), None if end is None else self.number(end))
 
     def to_networkx(self) -> Any:
-        """A Graph or DiGraph of networkx: cost, prize, blocked and pos are attributes."""
+        """A Graph or DiGraph of networkx. Edges have `cost`; nodes have `prize`, `blocked` and, if known, `pos`."""
         import networkx
 
         graph = networkx.DiGraph() if self.directed else networkx.Graph()
@@ -382,7 +459,7 @@ class World:
         return graph
 
     def to_scipy(self) -> Any:
-        """The costs as a sparse matrix [N, N] (CSR), both ways where edges lead both ways."""
+        """The costs as a sparse matrix (CSR), both ways where edges lead both ways. Shape [N, N]."""
         import scipy.sparse
 
         ends, costs = self.edges()
