@@ -1,17 +1,26 @@
-"""What the Python tests share: the programs under test, and a reader of safetensors files of its own."""
+"""What the Python tests share: the programs under test, blocks of the docs, a reader of safetensors files."""
 
 import json
 import os
 import pathlib
+import re
 import struct
 import subprocess
 
 import numpy
 import pytest
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BIN = pathlib.Path(os.environ["GRAPHDRL_BIN"])
 WITH_TORCH = (BIN / "graphdrl-train").exists()  # the build has LibTorch, and OpenBLAS with it
 DTYPES = {"F32": "<f4", "F64": "<f8", "I32": "<i4", "I64": "<i8", "U16": "<u2", "U64": "<u8"}
+
+
+def python_blocks(document):
+    """Line, code and, where a ```text block follows at once, what it prints."""
+    text = (ROOT / document).read_text(encoding="utf-8")
+    for block in re.finditer(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```\n)?", text, re.DOTALL | re.MULTILINE):
+        yield text.count("\n", 0, block.start(1)), block[1], block[2]
 
 
 def read_safetensors(path):

@@ -1,19 +1,21 @@
-"""The commands of the docs, run as they stand there: those of blocks that begin with ```sh, document by document.
+"""What the docs say to run, run as it stands there, document by document: blocks that begin with ```sh or ```python.
 
 Of the README's commands two are left out, the training of 45 minutes and TensorBoard, and one training is shortened.
+What needs Stable-Baselines3 runs in test_learners.py, what needs OR-tools where that is installed.
 """
 
+import contextlib
+import importlib.util
+import io
 import os
-import pathlib
 import re
 import shutil
 import subprocess
 
 import pytest
 
-from conftest import BIN
+from conftest import BIN, ROOT, python_blocks
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 COMMANDS = "train evaluate plan check report inspect export results tune bench completion".split() + [
     f"maps {name}" for name in "info show convert generate".split()
 ]
@@ -48,6 +50,35 @@ def test_commands_of_the_readme_run(tmp_path):
     shown = [" ".join(command.split()) for command in re.findall(r"`(graphdrl (?:maps generate|plan)[^`]*)`", text)]
     assert len(commands) > 10 and len(shown) == 2
     run_commands(commands + shown, tmp_path)
+
+
+def missing(code):
+    """The packages that a block imports and that are not installed here."""
+    imported = re.findall(r"^(?:import|from) (\w+)", code, re.MULTILINE)
+    return [package for package in imported if importlib.util.find_spec(package) is None]
+
+
+@pytest.mark.parametrize(
+    ("document", "least", "not_installed"),
+    [("README.md", 1, ()), ("docs/python.md", 12, ()), ("docs/coming_from.md", 4, ("ortools", "stable_baselines3"))],
+)
+def test_python_blocks_run(document, least, not_installed, tmp_path, monkeypatch):
+    """One after the other, in one namespace, printing what the page says."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    names = {}
+    count = 0
+    for line, code, expected in python_blocks(document):
+        if missing(code):
+            assert set(missing(code)) <= set(not_installed)
+            continue
+        code = code.replace("episodes=2_000", "episodes=12")  # ten minutes otherwise
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(compile("\n" * line + code, document, "exec"), names)
+        assert expected is None or printed.getvalue() == expected, code
+        count += 1
+    assert count >= least
 
 
 def test_every_command_has_its_options_in_the_docs(run):

@@ -6,13 +6,13 @@ They run in an environment of their own, beside Debian's PyTorch, with an older 
 import csv
 import json
 import os
-import pathlib
 import re
 import subprocess
 
 import pytest
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+from conftest import ROOT, python_blocks
+
 PYTHON = ROOT / "build" / "venv-learners" / "bin" / "python"
 EXAMPLES = ROOT / "examples" / "python"
 
@@ -72,6 +72,18 @@ def test_dqn_on_map_a(tmp_path):
     assert [row["step"] for row in rows if row["learner"] == "graphdrl"] == ["250", "500"]
     assert [row["step"] for row in rows if row["learner"] == "stable-baselines3"][:2] == ["25", "50"]
     assert "</svg>" in (tmp_path / "curves" / "curves.svg").read_text()
+
+
+def test_what_the_docs_say_of_stable_baselines3(tmp_path):
+    """The block that needs it and the one after it, shortened."""
+    blocks = [code for _, code, _ in python_blocks("docs/coming_from.md")]
+    at = next(i for i, code in enumerate(blocks) if "stable_baselines3" in code)
+    code = "\n".join(blocks[at : at + 2])
+    for long, short in (("50_000", "500"), ("2_000", "12")):
+        assert code.count(long) == 1
+        code = code.replace(long, short)
+    text = run_python("-c", code, folder=tmp_path)
+    assert re.match(r"\d+ of 19 cells\n<Plan paper:a, policy>\n", text), text
 
 
 def test_maskable_ppo(tmp_path):

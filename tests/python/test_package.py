@@ -6,7 +6,6 @@ import json
 import os
 import pathlib
 import pickle
-import re
 import signal
 import subprocess
 import sys
@@ -285,15 +284,6 @@ def test_notes_are_warnings(tmp_path):
     nx.write_gml(graph, tmp_path / "some.gml")
     with pytest.warns(UserWarning, match="coordinates"):
         graphdrl.World.from_file(tmp_path / "some.gml")
-
-
-@pytest.mark.parametrize("document", ["README.md", "docs/python.md"])
-def test_examples_of_the_docs_run(document, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(encoding="utf-8"), re.DOTALL)
-    assert blocks
-    for block in blocks:
-        exec(compile(block, document, "exec"), {})
 
 
 GOOD = graphdrl.World.from_edges([[0, 1], [1, 2]])
