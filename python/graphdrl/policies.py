@@ -182,17 +182,24 @@ class PaperNetwork(Policy):
     _kind = _core.PaperNetwork
 
     def __init__(self, tensors: Mapping[str, ArrayLike], name: str | None = None, wall: str = "border") -> None:
-        """As of any Policy. `wall` says which cells the network sees as wall, and must be as in its training.
+        """A network of these tensors, so that what was trained elsewhere comes in.
 
-        `border`: the first and last rows and columns. `zero_or_nine`: rows and columns 0 and 9, whatever the map's
-        size, as in the code of the paper's author. Raises Error on another.
+        Args:
+            tensors: as of any Policy.
+            name: of the policy; by default that of its class.
+            wall: which cells the network sees as wall, as in its training. `border`: the first and last rows and
+                columns. `zero_or_nine`: rows and columns 0 and 9, whatever the map's size, as in the code of the
+                paper's author.
+
+        Raises:
+            Error: bad tensors, as of any Policy; another `wall`.
         """
         self._core = self._kind(self._arrays(tensors), str(wall))
         self.name = name or type(self).__name__
 
     @property
     def wall(self) -> str:
-        """Which cells the network sees as wall: `border` or `zero_or_nine`."""
+        """Which cells the network sees as wall, `border` or `zero_or_nine`."""
         return self._core.wall
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -15,12 +15,21 @@ from ._core import Error
 from .policies import PaperNetwork
 from .world import shown
 
+__all__ = ["read_published"]
+
 
 def read_published(path: str | os.PathLike[str]) -> PaperNetwork:
     """The network of a `state_dict()` that the author's code saved. No code in the file is executed.
 
     It sees the wall as that code does, and its values are those before that code's `log_softmax`: the order is the
-    same, and so is every walk. Raises Error on any other file, ImportError without PyTorch.
+    same, and so is every walk.
+
+    Args:
+        path: the file.
+
+    Raises:
+        Error: any other file.
+        ImportError: no PyTorch.
     """
     import torch
 

@@ -9,10 +9,11 @@ import zlib
 
 import graphdrl
 import graphdrl.environments
+import graphdrl.published
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-MODULES = (graphdrl, graphdrl.environments)
+MODULES = (graphdrl, graphdrl.environments, graphdrl.published)
 OURS = re.compile(r"graphdrl(\.|$)")  # modules whose classes are ours
 
 
