@@ -201,8 +201,8 @@ void refuse_beside_resume(const std::vector<CLI::Option*>& options, const std::s
 // The parser of the arguments after `train`, and what they say.
 class TrainProgram {
  public:
-  explicit TrainProgram(MakePaperLearner make_learner)
-      : make_learner_(std::move(make_learner)), flags_(app_, command_.given) {
+  explicit TrainProgram(MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {})
+      : make_learner_(std::move(make_learner)), make_group_(std::move(make_group)), flags_(app_, command_.given) {
     app_.add_option(
             "--seeds", command_.seeds,
             "Independent runs of many seeds, as 1-8 or 1,4,7-9, one a thread: each in RUN/seed-N, with the bytes "
@@ -233,7 +233,7 @@ class TrainProgram {
     if (resume_->count() > 0) {
       refuse_beside_resume(of_new_runs_, command_.resume);
       if (SeedRuns::are_in(command_.resume)) {
-        SeedRuns runs = SeedRuns::resume(command_.resume, make_learner_);
+        SeedRuns runs = SeedRuns::resume(command_.resume, make_learner_, make_group_);
         return train(runs, command_.json);
       }
       return train(*Trainer::resume(RunDirectory(command_.resume), make_learner_), command_.json);
@@ -241,13 +241,14 @@ class TrainProgram {
     const TrainOptions options = flags_.resolve();
     const std::string out = command_.out.empty() ? "runs/" + options.preset : command_.out;
     if (!command_.seeds.empty()) {
-      SeedRuns runs = SeedRuns::start(options, parse_seeds(command_.seeds), out, make_learner_);
+      SeedRuns runs = SeedRuns::start(options, parse_seeds(command_.seeds), out, make_learner_, make_group_);
       return train(runs, command_.json);
     }
     train(*Trainer::start(options, RunDirectory(out), make_learner_), command_.json);
   }
 
   MakePaperLearner make_learner_;
+  MakePaperLearnerGroup make_group_;
   CLI::App app_{
       "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
       "graphdrl train"};
@@ -259,8 +260,9 @@ class TrainProgram {
 
 }  // namespace
 
-int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner) {
-  TrainProgram program(make_learner);
+int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner,
+                      const MakePaperLearnerGroup& make_group) {
+  TrainProgram program(make_learner, make_group);
   std::vector<const char*> argv = {"graphdrl train"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   return run_program(program.app(), static_cast<int>(argv.size()), const_cast<char**>(argv.data()));

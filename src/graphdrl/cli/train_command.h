@@ -12,7 +12,8 @@ namespace graphdrl {
 
 // Trains as the arguments after `train` say; gives the exit status. `make_learner`: for the devices that the program
 // knows.
-int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner);
+int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner,
+                      const MakePaperLearnerGroup& make_group = {});
 
 // From now on the signals that end programs end trainings: training_signal() is the last one, 0 before any.
 void catch_training_signals();

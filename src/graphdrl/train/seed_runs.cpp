@@ -96,11 +96,16 @@ RunDirectory SeedRuns::run_directory_in(const std::filesystem::path& folder, std
   return RunDirectory(folder / fmt::format("seed-{}", seed));
 }
 
-SeedRuns::SeedRuns(const SeedsFile& file, const std::filesystem::path& folder, const MakePaperLearner& make_learner)
-    : folder_(folder), trainings_(planned_runs(file, folder), make_learner) {}
+SeedRuns::SeedRuns(const SeedsFile& file, const std::filesystem::path& folder, const MakePaperLearner& make_learner,
+                   const MakePaperLearnerGroup& make_group)
+    : folder_(folder),
+      trainings_(
+          planned_runs(file, folder), make_learner,
+          file.options.preset == kPaperPreset && file.options.device != "cpu" ? make_group : MakePaperLearnerGroup()) {}
 
 SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t> seeds,
-                         const std::filesystem::path& folder, const MakePaperLearner& make_learner) {
+                         const std::filesystem::path& folder, const MakePaperLearner& make_learner,
+                         const MakePaperLearnerGroup& make_group) {
   if (are_in(folder)) {
     throw Error({.what = "the folder holds runs already",
                  .expected = "a new folder, or --resume to go on with them",
@@ -114,11 +119,12 @@ SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t>
   json.erase("seed");
   json[kSeedsKey] = file.seeds;
   write_file(seeds_file(folder), json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
-  return {file, folder, make_learner};
+  return {file, folder, make_learner, make_group};
 }
 
-SeedRuns SeedRuns::resume(const std::filesystem::path& folder, const MakePaperLearner& make_learner) {
-  return {read_seeds(folder), folder, make_learner};
+SeedRuns SeedRuns::resume(const std::filesystem::path& folder, const MakePaperLearner& make_learner,
+                          const MakePaperLearnerGroup& make_group) {
+  return {read_seeds(folder), folder, make_learner, make_group};
 }
 
 }  // namespace graphdrl

@@ -27,11 +27,13 @@ class SeedRuns {
   // Trainer::start, and where the folder holds such runs already.
   static SeedRuns start(const TrainOptions& options, std::vector<std::uint64_t> seeds,
                         const std::filesystem::path& folder,
-                        const MakePaperLearner& make_learner = make_paper_cpu_learner);
+                        const MakePaperLearner& make_learner = make_paper_cpu_learner,
+                        const MakePaperLearnerGroup& make_group = {});
 
   // Goes on with the runs of a folder. Throws Error where its files are not whole.
   static SeedRuns resume(const std::filesystem::path& folder,
-                         const MakePaperLearner& make_learner = make_paper_cpu_learner);
+                         const MakePaperLearner& make_learner = make_paper_cpu_learner,
+                         const MakePaperLearnerGroup& make_group = {});
 
   // Whether a folder holds the runs of many seeds.
   static bool are_in(const std::filesystem::path& folder);
@@ -42,7 +44,8 @@ class SeedRuns {
   SideBySide& trainings() { return trainings_; }  // in the order of the seeds
 
  private:
-  SeedRuns(const SeedsFile& file, const std::filesystem::path& folder, const MakePaperLearner& make_learner);
+  SeedRuns(const SeedsFile& file, const std::filesystem::path& folder, const MakePaperLearner& make_learner,
+           const MakePaperLearnerGroup& make_group);
 
   std::filesystem::path folder_;
   SideBySide trainings_;

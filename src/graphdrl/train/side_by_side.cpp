@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <thread>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
 
 namespace graphdrl {
 
-SideBySide::SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner)
-    : runs_(std::move(runs)), make_learner_(std::move(make_learner)) {
+SideBySide::SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group)
+    : runs_(std::move(runs)), make_learner_(std::move(make_learner)), make_group_(std::move(make_group)) {
   for (const PlannedRun& run : runs_) {
     const bool there = std::filesystem::exists(run.directory.checkpoint());
     const auto trainer = there ? Trainer::resume(run.directory, make_learner_)
@@ -33,12 +34,12 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
   const auto trained = [&](const TrainingProgress& progress) { return progress.done == units_.count; };
   const std::int64_t samples_before = sum(&TrainingProgress::samples);
   std::mutex mutex;
-  const auto train = [&](int i) {
+  run_each([&](int i, const MakePaperLearner& make_learner) {
     const auto index = static_cast<std::size_t>(i);
     if (trained(progress_[index]) || stop()) return;
     const RunDirectory& directory = runs_[index].directory;
     try {
-      Trainer::resume(directory, make_learner_)->run(stop, [&](const TrainingNews& news) {
+      Trainer::resume(directory, make_learner)->run(stop, [&](const TrainingNews& news) {
         const std::lock_guard lock(mutex);
         progress_[index] = news.progress;
         const double session_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -53,16 +54,31 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("{}: {}", directory.path().string(), error.what()));
     }
-  };
-  // Another device has one training at a time.
-  const std::string& device = runs_.front().options.device;
-  const int count = static_cast<int>(runs_.size());
-  if (device.empty() || device == "cpu") {
-    parallel_for(count, train);
-  } else {
-    for (int i = 0; i < count; ++i) train(i);
-  }
+  });
   return std::all_of(progress_.begin(), progress_.end(), trained);
+}
+
+// One run a thread of the pool; on another device, all at once.
+void SideBySide::run_each(const std::function<void(int run, const MakePaperLearner&)>& train) {
+  const int count = static_cast<int>(runs_.size());
+  if (!make_group_) return parallel_for(count, [&](int i) { train(i, make_learner_); });
+  const auto group = make_group_(runs_.front().options.device, count);
+  std::vector<std::exception_ptr> failures(runs_.size());
+  std::vector<std::thread> threads;
+  for (int i = 0; i < count; ++i) {
+    threads.emplace_back([&, i] {
+      try {
+        train(i, group->learner_of(i));
+      } catch (...) {
+        failures[static_cast<std::size_t>(i)] = std::current_exception();
+      }
+      group->leave(i);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
 }
 
 }  // namespace graphdrl

@@ -27,11 +27,12 @@ class SideBySide {
  public:
   // Begins the runs that are not there yet, and reads where the others stand. Throws Error, as Trainer does. REQUIRES:
   // at least one run; all of one preset, length and device.
-  SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner);
+  // make_group: for another device than the CPU; then all runs have the same options but for their seeds.
+  SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {});
 
   // On threads() threads, until all are trained or `stop` says so; then all are saved. Memory: that of as many
-  // trainings as there are threads. `tell` may be called on any thread, but never twice at a time. Gives whether all
-  // are trained.
+  // trainings as there are threads; of all of them, on another device. `tell` may be called on any thread, but never
+  // twice at a time. Gives whether all are trained.
   bool run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell);
 
   const std::vector<PlannedRun>& runs() const { return runs_; }
@@ -39,10 +40,12 @@ class SideBySide {
   const Recipe::Units& units() const { return units_; }                        // of one run
 
  private:
+  void run_each(const std::function<void(int run, const MakePaperLearner&)>& train);
   std::int64_t sum(std::int64_t TrainingProgress::*member) const;
 
   std::vector<PlannedRun> runs_;
   MakePaperLearner make_learner_;
+  MakePaperLearnerGroup make_group_;
   std::vector<TrainingProgress> progress_;
   Recipe::Units units_;
 };
