@@ -24,7 +24,7 @@ class Task(ctypes.Structure):
     )
 
 
-library = ctypes.CDLL(sys.argv[1] if len(sys.argv) > 1 else "libgraphdrl.so.0")
+library = ctypes.CDLL(sys.argv[1] if len(sys.argv) > 1 else "libgraphdrl.so.0.1")
 library.graphdrl_last_error.restype = ctypes.c_char_p
 library.graphdrl_result_json.restype = ctypes.c_char_p
 library.graphdrl_result_json.argtypes = [ctypes.c_void_p]
@@ -40,7 +40,7 @@ def check(status):
 world = ctypes.c_void_p()
 check(library.graphdrl_world_from_file(b"paper:b", ctypes.byref(world)))
 task = Task()
-library.graphdrl_task_init(ctypes.byref(task))
+library.graphdrl_task_init_sized(ctypes.byref(task), ctypes.c_size_t(ctypes.sizeof(task)))
 task.budget = 20
 result = ctypes.c_void_p()
 check(library.graphdrl_plan(world, ctypes.byref(task), ctypes.byref(result)))

@@ -9,11 +9,14 @@
 #ifndef GRAPHDRL_GRAPHDRL_H
 #define GRAPHDRL_GRAPHDRL_H
 
+#include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "graphdrl/graphdrl_c.h"
@@ -21,7 +24,7 @@
 namespace graphdrl {
 inline namespace v0 {
 
-// Its text is one line. bad_input(): an argument or a file that cannot be, rather than memory that ran out.
+// Its text is one line. bad_input(): a bad argument or file, rather than memory that ran out.
 class Error : public std::runtime_error {
  public:
   Error(graphdrl_status status, const std::string& text) : std::runtime_error(text), status_(status) {}
@@ -43,7 +46,7 @@ inline std::string version() {
   return graphdrl_version();
 }
 
-// How many threads one call may use; 1 at first. Results do not depend on it.
+// How many threads one call may use; 1 at first. Results do not depend on it. Do not call it while another call runs.
 inline void set_threads(int count) {
   detail::check(graphdrl_set_threads(count));
 }
@@ -69,19 +72,19 @@ class World {
   static World from_edges(const std::vector<Edge>& edges, const GraphOptions& options = {}) {
     std::vector<std::int32_t> ends;
     std::vector<double> costs;
-    std::int32_t nodes = 0;
+    std::int64_t nodes = options.node_count < 0 ? 0 : options.node_count;
     for (const Edge& edge : edges) {
       ends.push_back(edge.from);
       ends.push_back(edge.to);
       costs.push_back(edge.cost);
-      for (const std::int32_t node : {edge.from, edge.to}) nodes = node >= nodes ? node + 1 : nodes;
+      if (options.node_count < 0) nodes = std::max({nodes, std::int64_t{edge.from} + 1, std::int64_t{edge.to} + 1});
     }
-    if (options.node_count >= 0) nodes = options.node_count;
+    if (nodes > INT32_MAX) throw Error(GRAPHDRL_BAD_INPUT, "bad number of nodes: got " + std::to_string(nodes));
     require_length(options.blocked.size(), nodes, "blocked");
     require_length(options.prizes.size(), nodes, "prizes");
     graphdrl_world* world = nullptr;
-    detail::check(graphdrl_world_from_edges(options.name.c_str(), nodes, edges.size(), ends.data(), costs.data(),
-                                            options.directed ? 1 : 0,
+    detail::check(graphdrl_world_from_edges(options.name.c_str(), static_cast<std::int32_t>(nodes), edges.size(),
+                                            ends.data(), costs.data(), options.directed ? 1 : 0,
                                             options.blocked.empty() ? nullptr : options.blocked.data(),
                                             options.prizes.empty() ? nullptr : options.prizes.data(), &world));
     return World(world);

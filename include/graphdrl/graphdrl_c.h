@@ -22,8 +22,8 @@ extern "C" {
 /* As the program's exit statuses. */
 typedef enum graphdrl_status {
   GRAPHDRL_DONE = 0,
-  GRAPHDRL_FAILED = 1,   /* no fault of the caller's: memory ran out, say */
-  GRAPHDRL_BAD_INPUT = 2 /* an argument or a file that cannot be */
+  GRAPHDRL_FAILED = 1,   /* not the caller's fault, such as memory that ran out */
+  GRAPHDRL_BAD_INPUT = 2 /* a bad argument or file */
 } graphdrl_status;
 
 typedef struct graphdrl_world graphdrl_world;
@@ -45,7 +45,7 @@ GRAPHDRL_API graphdrl_status graphdrl_set_threads(int32_t count);
 /* ---- Worlds ---- */
 
 /* A graph.
- * name: of pictures and errors; NULL for none. edges: [2 * edge_count], pairs of nodes; loops are left out, and of
+ * name: of pictures and errors; NULL for "graph". edges: [2 * edge_count], pairs of nodes; loops are left out, and of
  * parallel edges the cheapest stays. costs: [edge_count], finite, from 0 up; NULL for 1 each. directed: 0 where edges
  * lead both ways. blocked: [node_count], other than 0 where nobody may go; NULL for nowhere. prizes: [node_count], of
  * first visits, finite, from 0 up; NULL for 1 each. */
@@ -63,13 +63,14 @@ GRAPHDRL_API graphdrl_status graphdrl_world_from_grid(const char* name, int32_t 
 /* A file in any format that the program reads, or "paper:a" to "paper:j". */
 GRAPHDRL_API graphdrl_status graphdrl_world_from_file(const char* path, graphdrl_world** world);
 
-/* Of a world that is NULL: "", 0, NULL and -1. */
+/* For a NULL world these give "", 0, NULL or -1. */
 GRAPHDRL_API const char* graphdrl_world_name(const graphdrl_world* world);
 GRAPHDRL_API int32_t graphdrl_world_node_count(const graphdrl_world* world);  /* blocked ones included */
 GRAPHDRL_API int32_t graphdrl_world_valid_count(const graphdrl_world* world); /* those that are not blocked */
 /* What the file calls a node; NULL where it has no names, or no such node. */
 GRAPHDRL_API const char* graphdrl_world_label(const graphdrl_world* world, int32_t node);
-/* The node of a label, of "row,column" on a grid or of "#number"; -1 where there is no such valid node. */
+/* The node of a label, of "row,column" on a grid or of "#number"; -1 where there is no such valid node, and
+ * graphdrl_last_error() says why. */
 GRAPHDRL_API int32_t graphdrl_world_find(const graphdrl_world* world, const char* label);
 
 /* ---- Plans ---- */
@@ -81,12 +82,14 @@ enum {
 };
 
 /* Called now and then, on the thread that plans. visited: nodes of the walk under way, or of the best one. bound:
- * infinite where there is none yet. Give other than 0 to end this planning: the plan is the best one so far then. */
+ * infinite where there is none yet. Return non-zero to end this plan; graphdrl_plan() then gives the best walk so far.
+ */
 typedef int32_t (*graphdrl_progress)(int32_t visited, double bound, void* data);
 
-/* What is asked. graphdrl_task_init() sets all of it; then set what differs. */
+/* What is asked. graphdrl_task_init() sets all of it; then set what differs. Later versions may add fields at its end.
+ */
 typedef struct graphdrl_task {
-  size_t size;                /* of this struct, as the caller knows it */
+  size_t size;                /* of this struct, as the header of the caller has it */
   double budget;              /* in units of cost; below 0: what the file says */
   double relative;            /* above 0: instead, so many times the valid nodes, in edges of mean cost */
   int32_t start;              /* a node or GRAPHDRL_GIVEN */
@@ -98,7 +101,12 @@ typedef struct graphdrl_task {
   void* progress_data;
 } graphdrl_task;
 
-GRAPHDRL_API void graphdrl_task_init(graphdrl_task* task);
+/* Sets the fields that a struct of this size has. */
+GRAPHDRL_API void graphdrl_task_init_sized(graphdrl_task* task, size_t size);
+
+static inline void graphdrl_task_init(graphdrl_task* task) {
+  graphdrl_task_init_sized(task, sizeof(graphdrl_task));
+}
 
 /* Plans one walk, and bounds it. The result may outlive the world. */
 GRAPHDRL_API graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* task,
@@ -108,16 +116,17 @@ GRAPHDRL_API graphdrl_status graphdrl_plan(const graphdrl_world* world, const gr
 GRAPHDRL_API graphdrl_status graphdrl_upper_bound(const graphdrl_world* world, const graphdrl_task* task,
                                                   double* bound);
 
-/* Of a result that is NULL: 0, NULL and "". */
+/* For a NULL result these give 0, NULL or "". */
 /* Every step, the start first; it lives as long as the result. length: set to how many, where it is not NULL. */
 GRAPHDRL_API const int32_t* graphdrl_result_walk(const graphdrl_result* result, size_t* length);
 GRAPHDRL_API int32_t graphdrl_result_visited(const graphdrl_result* result); /* valid nodes, the start included */
 GRAPHDRL_API double graphdrl_result_prize(const graphdrl_result* result);    /* of all nodes visited */
 GRAPHDRL_API double graphdrl_result_cost(const graphdrl_result* result);
-GRAPHDRL_API double graphdrl_result_budget(const graphdrl_result* result);   /* in units of cost */
-GRAPHDRL_API double graphdrl_result_bound(const graphdrl_result* result);    /* no walk has a higher prize */
-GRAPHDRL_API int32_t graphdrl_result_optimal(const graphdrl_result* result); /* 1 where that is proved of this one */
-/* The document of `graphdrl plan --json`; it lives as long as the result. */
+GRAPHDRL_API double graphdrl_result_budget(const graphdrl_result* result); /* in units of cost */
+GRAPHDRL_API double graphdrl_result_bound(const graphdrl_result* result);  /* no walk has a higher prize */
+GRAPHDRL_API int32_t
+graphdrl_result_optimal(const graphdrl_result* result); /* 1 if it is proved that no walk has a higher prize, else 0 */
+/* The document of `graphdrl plan --json`; it lives as long as the result. "" if memory ran out. */
 GRAPHDRL_API const char* graphdrl_result_json(const graphdrl_result* result);
 /* Writes it in the format of the ending, as `graphdrl plan --out`. */
 GRAPHDRL_API graphdrl_status graphdrl_result_save(const graphdrl_result* result, const char* path);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <thread>
 
@@ -108,7 +110,7 @@ TEST(CInterface, SaysInOneLineWhatIsWrong) {
 
   graphdrl_world* world = nullptr;
   const unsigned char cells[4] = {1, 1, 1, 1};
-  refused(graphdrl_world_from_grid(nullptr, 2, 2, cells, 0, &world), "");
+  refused(graphdrl_world_from_grid(nullptr, 2, 2, cells, 0, &world), "no valid node");
   refused(graphdrl_world_from_grid(nullptr, 0, 2, cells, 0, &world), "bad size of a grid");
   refused(graphdrl_world_from_grid(nullptr, 2, 2, nullptr, 0, &world), "NULL");
   refused(graphdrl_world_from_file("no-such-map", &world), "no such map");
@@ -123,6 +125,7 @@ TEST(CInterface, SaysInOneLineWhatIsWrong) {
     return status;
   };
   refused(plan([&](graphdrl_task& task) { task.budget = nan; }), "budget");
+  refused(plan([&](graphdrl_task& task) { task.relative = nan; }), "budget");
   refused(plan([&](graphdrl_task& task) { task.budget = -1; }), "no budget is given");
   refused(plan([&](graphdrl_task& task) { task.relative = INFINITY; }), "budget");
   refused(plan([&](graphdrl_task& task) { task.start = 4; }), "start outside the map");
@@ -135,6 +138,28 @@ TEST(CInterface, SaysInOneLineWhatIsWrong) {
   refused(graphdrl_plan(nullptr, nullptr, &result), "NULL");
   refused(graphdrl_set_threads(0), "bad number of threads");
   refused(graphdrl_result_save(nullptr, "walk.json"), "NULL");
+}
+
+// 0.12345678 of 10,000 valid nodes; six digits would give one step less.
+TEST(CInterface, TakesRelativeBudgetsToTheLastDigit) {
+  const std::vector<unsigned char> cells(100 * 100, 0);
+  Owned<graphdrl_world> world;
+  ASSERT_EQ(graphdrl_world_from_grid(nullptr, 100, 100, cells.data(), 0, &world.handle), GRAPHDRL_DONE);
+  graphdrl_task task = task_of(-1);
+  task.relative = 0.12349999;
+  task.policy = "nearest";
+  Owned<graphdrl_result> result;
+  ASSERT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_DONE) << graphdrl_last_error();
+  EXPECT_EQ(graphdrl_result_budget(result.handle), 1234);
+}
+
+// A header of an older version has a smaller struct: what follows it stays.
+TEST(CInterface, InitialisesNoMoreThanTheCallersStruct) {
+  graphdrl_task task;
+  std::memset(&task, 0x55, sizeof task);
+  graphdrl_task_init_sized(&task, offsetof(graphdrl_task, policy));
+  EXPECT_EQ(task.start, GRAPHDRL_GIVEN);
+  EXPECT_EQ(task.seed, 0x5555555555555555u);
 }
 
 TEST(CInterface, AnswersForNothing) {

@@ -1,8 +1,11 @@
 // The C interface: handles around worlds and plans, and no exception past its edge.
+#include <fmt/format.h>
 #include <graphdrl/graphdrl_c.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -67,9 +70,11 @@ NodeId checked(const World& world, std::int32_t node, const char* role) {
 }
 
 double budget_of(const World& world, const graphdrl_task& task) {
-  if (task.relative > 0) return Budget::parse(std::to_string(task.relative) + "x").cost_in(world);
+  if (std::isnan(task.relative)) throw Error({.what = "the budget is not a number", .where = "relative"});
+  // Not std::to_string(), which writes what the caller's locale says.
+  if (task.relative > 0) return Budget::parse(fmt::format("{}x", task.relative)).cost_in(world);
   if (task.budget >= 0) return checked_budget(world, task.budget);
-  if (world.given().budget && !std::isnan(task.budget)) return *world.given().budget;
+  if (world.given().budget && !std::isnan(task.budget)) return checked_budget(world, *world.given().budget);
   throw Error({.what = "no budget is given", .where = world.name()});
 }
 
@@ -95,7 +100,7 @@ Task task_of(const World& world, const graphdrl_task& task) {
   return {.view = world, .start = start, .budget = budget_of(world, task), .end = end};
 }
 
-// Tells the caller how far the planning is, until he has it stopped.
+// Reports progress to the caller until the caller stops the planning.
 Report progress_of(const graphdrl_task& task, std::atomic<bool>& stopped) {
   if (task.progress == nullptr) return {};
   return [&](const PlanProgress& news) {
@@ -212,18 +217,19 @@ int32_t graphdrl_world_find(const graphdrl_world* world, const char* label) {
   return node;
 }
 
-void graphdrl_task_init(graphdrl_task* task) {
+void graphdrl_task_init_sized(graphdrl_task* task, size_t size) {
   if (task == nullptr) return;
-  *task = {.size = sizeof(graphdrl_task),
-           .budget = -1,
-           .relative = 0,
-           .start = GRAPHDRL_GIVEN,
-           .end = GRAPHDRL_GIVEN,
-           .policy = nullptr,
-           .time_limit_s = -1,
-           .seed = 1,
-           .progress = nullptr,
-           .progress_data = nullptr};
+  const graphdrl_task whole = {.size = size,
+                               .budget = -1,
+                               .relative = 0,
+                               .start = GRAPHDRL_GIVEN,
+                               .end = GRAPHDRL_GIVEN,
+                               .policy = nullptr,
+                               .time_limit_s = -1,
+                               .seed = 1,
+                               .progress = nullptr,
+                               .progress_data = nullptr};
+  std::memcpy(task, &whole, std::min(size, sizeof whole));
 }
 
 graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* task, graphdrl_result** result) {
@@ -286,8 +292,12 @@ int32_t graphdrl_result_optimal(const graphdrl_result* result) {
 
 const char* graphdrl_result_json(const graphdrl_result* result) {
   if (result == nullptr) return "";
-  const graphdrl_status made =
-      guarded([&] { std::call_once(result->json_made, [&] { result->json = plan_json(result->report).dump(); }); });
+  const graphdrl_status made = guarded([&] {
+    std::call_once(result->json_made, [&] {
+      using Json = nlohmann::ordered_json;
+      result->json = plan_json(result->report).dump(-1, ' ', false, Json::error_handler_t::replace);
+    });
+  });
   return made == GRAPHDRL_DONE ? result->json.c_str() : "";
 }
 
