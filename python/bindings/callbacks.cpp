@@ -15,6 +15,12 @@ namespace {
 
 constexpr std::chrono::milliseconds kBetweenLooks(50);
 
+// Python ends threads that ask for its lock while the interpreter ends, in the middle of C++, which aborts the process.
+// So such a thread sleeps until the process is gone.
+void wait_for_exit_where_python_ends() {
+  while (Py_IsInitialized() == 0) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
 std::vector<NodeId> moves_of(const Observation& observation) {
   std::vector<NodeId> nodes;
   for (int action = 0; action < observation.action_count(); ++action) {
@@ -28,11 +34,14 @@ class CallablePolicy final : public Policy {
   explicit CallablePolicy(nb::object choose) : choose_(std::move(choose)) {}
   CallablePolicy(const CallablePolicy&) = delete;
   ~CallablePolicy() override {
+    wait_for_exit_where_python_ends();
     const nb::gil_scoped_acquire lock;
     choose_.reset();
   }
 
   void act(std::span<const Observation> observations, std::span<int> actions) override {
+    if (planning_stopped()) return std::fill(actions.begin(), actions.end(), kStop);
+    wait_for_exit_where_python_ends();
     const nb::gil_scoped_acquire lock;
     for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = action(observations[i]);
   }
@@ -110,6 +119,8 @@ void run_unlocked(const std::function<void()>& work, const std::function<void()>
     });
     std::unique_lock lock(mutex);
     while (!ended.wait_for(lock, kBetweenLooks, [&] { return done; })) {
+      if (Py_IsInitialized() == 0) stop();
+      wait_for_exit_where_python_ends();
       if (raised) continue;
       lock.unlock();
       {
@@ -120,6 +131,7 @@ void run_unlocked(const std::function<void()>& work, const std::function<void()>
     }
     lock.unlock();
     worker.join();
+    wait_for_exit_where_python_ends();
   }
   if (!raised && !failure) heed();
   if (raised) throw std::move(*raised);

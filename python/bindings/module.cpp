@@ -17,7 +17,7 @@ NodeId checked_node(const World& world, std::int64_t node, std::string_view role
 }
 
 NB_MODULE(_core, module) {
-  // What globals and cycles still hold when Python ends is no leak to tell a user of.
+  // Globals and cycles that are still alive when Python ends are no leaks; do not report them.
   nb::set_leak_warnings(false);
   module.doc() = "The extension behind the package graphdrl.";
   module.attr("__version__") = GRAPHDRL_VERSION;

@@ -33,6 +33,15 @@ TEST(Quantile, LiesBetweenTheSortedValues) {
   EXPECT_EQ(quantile({5}, 0.7), 5);
 }
 
+// Differences 1, 2, 3: mean 2, standard deviation 1, so 2 / (1 / √3).
+TEST(PairedDifference, CountsInErrorsOfTheMeanDifference) {
+  const PairedDifference difference =
+      paired_difference(std::vector<double>{11, 22, 33}, std::vector<double>{10, 20, 30});
+  EXPECT_NEAR(difference.mean, 2, 1e-12);
+  EXPECT_NEAR(*difference.in_errors, 2 * std::sqrt(3.0), 1e-12);
+  EXPECT_FALSE(paired_difference(std::vector<double>{5, 6}, std::vector<double>{4, 5}).in_errors);
+}
+
 TEST(Summarise, HasNoSpreadForOneValue) {
   const Summary summary = summarise(std::vector<double>{5});
   EXPECT_EQ(summary.mean, 5);

@@ -341,7 +341,6 @@ def bad_inputs(tmp_path, policy):
         ([*evaluate_nearest, "--\x1b[31m"], "\\x1b[31m"),
         (["train", "--resume", ""], "--resume"),
         (["train", "--seeds", "2-1"], "--seeds: bad seeds"),
-        (["train", "--seeds", "1-2", "--seed", "3"], "--seed excludes --seeds"),
         (["train", "--maps", "no-map", "--seeds", "1-2", "--out", tmp_path / "new"], "no such map"),
         (["results", tmp_path / "nothing"], "cannot read the file"),
         (["results", policy.parent, "--figure", "curves.gif"], "FILE.svg or FILE.png"),
@@ -468,6 +467,12 @@ def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
     for name in ("policy.safetensors", "metrics.jsonl"):
         assert (tmp_path / "alone" / name).read_bytes() == (tmp_path / "all/seed-5" / name).read_bytes()
 
+    again = run("graphdrl", "train", "--config", "all/seeds.json", "--out", "again", cwd=tmp_path)
+    assert again.returncode == 0, again.stderr
+    assert (tmp_path / "again/seeds.json").read_bytes() == (tmp_path / "all/seeds.json").read_bytes()
+    twice = run("graphdrl", "results", "all", "all/seed-1", cwd=tmp_path)
+    assert twice.returncode == 2 and "two runs of seed 1" in twice.stderr
+
     (tmp_path / "page.md").write_text("before\n<!-- table -->\nold\n<!-- end of table -->\nafter\n")
     process = run("graphdrl", "results", "all", "--figure", "curves.svg", "--into", "page.md", "--json", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
@@ -482,7 +487,7 @@ def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
 
 
 def test_a_kill_in_the_middle_of_many_seeds_changes_nothing(run, tmp_path):
-    training = ["train", "--preset", "paper", "--episodes", "12", "--seeds", "3-4"]
+    training = ["train", "--preset", "paper", "--episodes", "30", "--seeds", "3-4"]
     assert run("graphdrl", *training, "--out", tmp_path / "whole").returncode == 0
     command = [BIN / "graphdrl", *training, "--out", tmp_path / "killed"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -491,9 +496,10 @@ def test_a_kill_in_the_middle_of_many_seeds_changes_nothing(run, tmp_path):
         time.sleep(0.05)
     process.kill()
     process.communicate(timeout=60)
+    assert process.returncode == -signal.SIGKILL
     resumed = run("graphdrl", "train", "--resume", tmp_path / "killed", "--json")
     assert resumed.returncode == 0, resumed.stderr
-    assert [one["episodes"] for one in json.loads(resumed.stdout)["runs"]] == [12, 12]
+    assert [one["episodes"] for one in json.loads(resumed.stdout)["runs"]] == [30, 30]
     for seed in (3, 4):
         for name in ("policy.safetensors", "metrics.jsonl"):
             whole = tmp_path / "whole" / f"seed-{seed}" / name

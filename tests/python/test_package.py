@@ -364,3 +364,46 @@ def test_the_notebook_runs(tmp_path, monkeypatch):
             assert any("image/svg+xml" in output.get("data", {}) for output in cell["outputs"])
         exec(compile(source, "notebook", "exec"), names)
     assert (tmp_path / "crossings.csv").exists()
+
+
+def test_python_may_end_while_a_thread_plans():
+    code = """
+import graphdrl, threading, time
+world = graphdrl.World.random("obstacles", 60, 1)
+threading.Thread(target=lambda: graphdrl.plan(world, "0.7x", time_limit=30.0), daemon=True).start()
+time.sleep(0.5)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_ctrl_c_ends_an_evaluation_of_an_own_policy():
+    code = """
+import graphdrl, os, signal
+world = graphdrl.World.random("obstacles", 10, 1)
+calls = 0
+def policy(state):
+    global calls
+    calls += 1
+    if calls == 100:
+        os.kill(os.getpid(), signal.SIGINT)
+    return state.moves[0]
+try:
+    graphdrl.evaluate(world, policy, 20, episodes=1_000_000)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert done.stdout == "interrupted\n"
+
+
+def test_a_time_limit_holds_between_the_steps_of_an_own_policy():
+    calls = []
+
+    def slow(state):
+        calls.append(state.position)
+        time.sleep(0.05)
+        return state.moves[0]
+
+    graphdrl.plan(graphdrl.World.random("obstacles", 20, 1), 200, policy=slow, time_limit=0.5)
+    assert len(calls) < 100

@@ -73,12 +73,13 @@ TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
   const Bytes second = alone(folder / "alone", GetParam(), 2);
   set_threads(2);
   SeedRuns::start(GetParam(), {1, 2, 3}, folder / "all");
-  int sessions = 1;
+  int sessions = 0;
+  const int questions = GetParam().preset == kPaperPreset ? 50 : 3;
   // Stopped after so many questions, on whatever thread.
   for (bool finished = false; !finished; ++sessions) {
     std::atomic<int> asked = 0;
     SeedRuns runs = SeedRuns::resume(folder / "all");
-    finished = runs.trainings().run([&] { return asked++ > 50; }, kSilent);
+    finished = runs.trainings().run([&] { return asked++ > questions; }, kSilent);
   }
   EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? 4 : 1);
   EXPECT_TRUE(bytes_of(RunDirectory(folder / "all" / "seed-2")) == second);
@@ -96,6 +97,23 @@ TEST(SeedRuns, BeginWhatIsMissing) {
     EXPECT_TRUE(bytes_of(SeedRuns::run_directory_in(folder / "all", seed)) ==
                 alone(folder / std::to_string(seed), short_paper(), seed));
   }
+}
+
+TEST(SeedRuns, TakeNoOtherRunForTheirs) {
+  const TemporaryFolder folder;
+  TrainOptions other = short_paper();
+  other.seed = 2;
+  other.discount = 0.5;
+  Trainer::start(other, SeedRuns::run_directory_in(folder / "all", 2));
+  EXPECT_THAT(error_of([&] {
+                SeedRuns::start(short_paper(), {1, 2}, folder / "all");
+              }),
+              HasSubstr("holds a run already"));
+  EXPECT_FALSE(SeedRuns::are_in(folder / "all"));
+  SeedRuns::start(short_paper(), {1, 3}, folder / "all");
+  std::filesystem::remove_all(folder / "all" / "seed-3");
+  Trainer::start(other, SeedRuns::run_directory_in(folder / "all", 3));
+  EXPECT_THAT(error_of([&] { SeedRuns::resume(folder / "all"); }), HasSubstr("of other options"));
 }
 
 TEST(SeedRuns, RefuseFoldersThatAreNone) {

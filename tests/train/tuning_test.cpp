@@ -49,6 +49,9 @@ TEST(Tuning, BeginsWithThePapersSettingAndMapsThatAreNotThePapers) {
   }
   EXPECT_EQ(maps.size(), 10u + 40u + 40u);
   EXPECT_THAT(error_of([&] { Tuning::start(options, folder / "tune"); }), HasSubstr("--resume"));
+  options.rounds = parse_rounds("2881x1");
+  EXPECT_THAT(error_of([&] { Tuning::start(options, folder / "more"); }), HasSubstr("at most 2880"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "more"));
 }
 
 TEST(Tuning, ScoresAreMeansOverValidationMapsWhateverTheInterruptions) {
@@ -73,11 +76,11 @@ TEST(Tuning, ScoresAreMeansOverValidationMapsWhateverTheInterruptions) {
   ASSERT_EQ(scores.size(), 2u);
   const std::vector<World> validation = load_worlds({(folder / "whole/maps/validation").string()});
   for (std::size_t round = 0; round < 2; ++round) {
-    ASSERT_EQ(scores[round].settings.size(), whole.scores()[round].settings.size());
-    for (std::size_t i = 0; i < scores[round].settings.size(); ++i) {
-      const SettingScore& score = whole.scores()[round].settings[i];
-      EXPECT_EQ(score.setting, scores[round].settings[i].setting);
-      EXPECT_EQ(score.by_seed, scores[round].settings[i].by_seed);
+    ASSERT_EQ(scores[round].size(), whole.scores()[round].size());
+    for (std::size_t i = 0; i < scores[round].size(); ++i) {
+      const SettingScore& score = whole.scores()[round][i];
+      EXPECT_EQ(score.setting, scores[round][i].setting);
+      EXPECT_EQ(score.by_seed, scores[round][i].by_seed);
       const std::string run = "round-" + std::to_string(round + 1) + "/setting-0" + std::to_string(score.setting);
       const Comparison alone =
           compare(validation, {.policies = {(folder / "whole" / run / "seed-2/policy.safetensors").string()},
@@ -85,7 +88,7 @@ TEST(Tuning, ScoresAreMeansOverValidationMapsWhateverTheInterruptions) {
                                .all_starts = true});
       EXPECT_EQ(score.by_seed[1], *alone.overall[0].mean);
       if (i > 0) {
-        EXPECT_LE(score.over_seeds.mean, whole.scores()[round].settings[i - 1].over_seeds.mean);
+        EXPECT_LE(score.over_seeds.mean, whole.scores()[round][i - 1].over_seeds.mean);
       }
       if (score.setting == 0) {
         EXPECT_EQ(score.over_paper, 0);
@@ -93,7 +96,7 @@ TEST(Tuning, ScoresAreMeansOverValidationMapsWhateverTheInterruptions) {
     }
   }
   // The second round has the best one, and the paper's: two where these are not the same.
-  EXPECT_EQ(scores[1].settings.size(), scores[0].settings[0].setting == 0 ? 1u : 2u);
+  EXPECT_EQ(scores[1].size(), scores[0][0].setting == 0 ? 1u : 2u);
   // Seeds are fresh ones.
   const auto seed_of = [&](const char* run) { return read_config(RunDirectory(folder / "whole" / run).config()).seed; };
   EXPECT_NE(seed_of("round-1/setting-00/seed-1"), seed_of("round-2/setting-00/seed-1"));

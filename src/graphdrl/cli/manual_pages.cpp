@@ -76,7 +76,9 @@ std::string manual_page(const CommandEntry& program, const CommandEntry& entry) 
       text += roff_option(option);
     }
   }
-  text += ".SH EXIT STATUS\n0: done. 2: bad input, said in one line on standard error. 1: a fault of the program's.\n";
+  text +=
+      ".SH EXIT STATUS\n0: done. 2: bad input, said in one line on standard error. 1: a fault of the program's. 130, "
+      "143: interrupted; what was done is printed or saved.\n";
   std::vector<std::string> others;
   for_each_command(program, [&](const CommandEntry& other) {
     if (other.name != entry.name) others.push_back(fmt::format("\\%\\fB{}\\fR(1)", roff(page_name(other.name))));

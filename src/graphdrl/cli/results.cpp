@@ -28,7 +28,7 @@ struct ResultsOptions {
 };
 
 struct PanelOfMetric {
-  const char* metric;
+  const char* name;
   const char* title;
   bool smooth = true;
   std::optional<double> low = {};
@@ -38,29 +38,29 @@ struct PanelOfMetric {
 // The panels of the paper's Figure 2; those of an explorer's training.
 std::vector<PanelOfMetric> panels_of(const TrainOptions& options) {
   if (options.preset == kExplorerPreset) {
-    return {{.metric = "loss", .title = "loss"},
-            {.metric = "regret", .title = "regret: nodes lost by a choice", .low = 0}};
+    return {{.name = "loss", .title = "loss"}, {.name = "regret", .title = "regret: nodes lost by a choice", .low = 0}};
   }
-  return {{.metric = "epsilon", .title = "exploration rate ε", .smooth = false, .low = 0, .high = 1},
-          {.metric = "loss", .title = "loss", .low = 0},
-          {.metric = "visited_nodes", .title = "nodes visited in an episode", .low = 0},
-          {.metric = "reward", .title = "reward of an episode"}};
+  return {{.name = "epsilon", .title = "exploration rate ε", .smooth = false, .low = 0, .high = 1},
+          {.name = "loss", .title = "loss", .low = 0},
+          {.name = "visited_nodes", .title = "nodes visited in an episode", .low = 0},
+          {.name = "reward", .title = "reward of an episode"}};
 }
 
 void write_figure(const std::filesystem::path& path, const std::vector<FinishedRun>& runs) {
   const TrainOptions& options = runs.front().options;
   std::vector<CurvePanel> panels;
-  for (const PanelOfMetric& of : panels_of(options)) {
-    CurvePanel panel{.title = of.title, .curves = {}, .low = of.low, .high = of.high};
+  for (const PanelOfMetric& metric : panels_of(options)) {
+    CurvePanel panel{.title = metric.title, .curves = {}, .low = metric.low, .high = metric.high};
     for (const FinishedRun& run : runs) {
-      std::vector<Point> curve = curve_of(run, of.metric);
-      panel.curves.push_back(of.smooth ? smoothed(std::move(curve), kWindow) : curve);
+      std::vector<Point> curve = curve_of(run, metric.name);
+      panel.curves.push_back(metric.smooth ? smoothed(std::move(curve), kWindow) : curve);
     }
     panels.push_back(std::move(panel));
   }
   const std::string note =
       runs.size() > 1
-          ? fmt::format("The mean of {} seeds, and what lies between the lowest and the highest", runs.size())
+          ? fmt::format("The mean of {} seeds, and the range between the lowest and the highest; means of ten points",
+                        runs.size())
           : fmt::format("Seed {}", options.seed);
   const Point size = curve_figure_size(panels.size());
   const auto canvas = path.extension() == ".png" ? make_png_canvas(size.x, size.y)
@@ -124,7 +124,7 @@ void results(const ResultsOptions& options) {
   policies.reserve(runs.size());
   for (const FinishedRun& run : runs) policies.push_back(run.directory.policy().string());
   const SeedDistribution distribution =
-      distribution_over_seeds(policies, load_worlds(options.maps), trained.maps, Budget::parse(trained.budget));
+      distribution_over_seeds(policies, load_worlds(options.maps), runs.front().maps, Budget::parse(trained.budget));
   if (!options.figure.empty()) write_figure(options.figure, runs);
   if (!options.into.empty()) write_into(options.into, markdown_distribution(distribution));
   if (options.json) return print_json(to_json(distribution, runs));

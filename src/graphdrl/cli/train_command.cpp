@@ -1,6 +1,7 @@
 #include "graphdrl/cli/train_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -44,6 +45,7 @@ class ConfigReader : public CLI::ConfigTOML {
       for (const Json& one : value.is_array() ? value : Json::array({value})) {
         item.inputs.push_back(one.is_string() ? one.get<std::string>() : one.dump());
       }
+      if (key == "seeds") item.inputs = {fmt::format("{}", fmt::join(item.inputs, ","))};  // of seeds.json
       result.push_back(std::move(item));
     }
     return result;
@@ -161,11 +163,14 @@ void train(SeedRuns& seeds, bool json) {
   SideBySide& trainings = seeds.trainings();
   const Recipe::Units& units = trainings.units();
   std::int64_t before = 0;
-  for (const TrainingProgress& progress : trainings.progress()) before += progress.done;
+  int seeds_done = 0;
+  for (const TrainingProgress& progress : trainings.progress()) {
+    before += progress.done;
+    if (progress.done == units.count) ++seeds_done;
+  }
   catch_training_signals();
   ProgressDisplay display(stderr, units.name, before);
   const std::size_t count = trainings.runs().size();
-  int seeds_done = 0;
   const bool finished = trainings.run([] { return stop_signal != 0; },
                                       [&](const SideBySideNews& news) {
                                         seeds_done = news.runs_done;
@@ -208,8 +213,7 @@ class TrainProgram {
             "Independent runs of many seeds, as 1-8 or 1,4,7-9, one a thread: each in RUN/seed-N, with the bytes "
             "that it would have alone")
         ->type_name("SEEDS")
-        ->check(not_empty())
-        ->excludes("--seed");
+        ->check(not_empty());
     app_.add_option("--out", command_.out, "The run directory, new (default: runs/PRESET)")
         ->type_name("RUN")
         ->check(not_empty());

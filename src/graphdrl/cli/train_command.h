@@ -15,7 +15,7 @@ namespace graphdrl {
 int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner,
                       const MakePaperLearnerGroup& make_group = {});
 
-// From now on the signals that end programs end trainings: training_signal() is the last one, 0 before any.
+// Catches SIGINT, SIGTERM and SIGHUP from now on. training_signal() gives the last one caught, 0 if none.
 void catch_training_signals();
 int training_signal();
 

@@ -35,7 +35,7 @@ Json to_json(const Tuning& tuning) {
   Json rounds = Json::array();
   for (const RoundScores& scores : tuning.scores()) {
     Json settings = Json::array();
-    for (const SettingScore& score : scores.settings) {
+    for (const SettingScore& score : scores) {
       settings.push_back({{"setting", tuning.settings()[score.setting]},
                           {"mean", score.over_seeds.mean},
                           {"std", or_null(score.over_seeds.std)},
@@ -63,7 +63,7 @@ std::string to_text(const Tuning& tuning) {
         "Round {}: {} seeds of {} episodes; percent of unseen maps visited\n\n  mean    std  over the "
         "paper's, in standard errors\n",
         round + 1, tuning.options().rounds[round].seeds, tuning.options().episodes);
-    for (const SettingScore& score : tuning.scores()[round].settings) {
+    for (const SettingScore& score : tuning.scores()[round]) {
       const auto& errors = score.over_paper_errors;
       text += fmt::format("{:6.1f} {:>6}  {:>+6.1f} {:>7}  {}\n", score.over_seeds.mean,
                           score.over_seeds.std ? fmt::format("{:.1f}", *score.over_seeds.std) : "–", score.over_paper,

@@ -8,7 +8,6 @@ namespace {
 
 constexpr int kMostInBlock = 64;
 constexpr std::int64_t kMostNodesInBlock = 1 << 22;  // 16 MB of visit counts
-constexpr int kStepsPerTick = 256;
 
 void step(Episode& episode, int action) {
   const Observation now = episode.observation();
@@ -55,7 +54,7 @@ std::vector<RolloutResult> roll_out(const World& world, std::span<const NodeId> 
 }
 
 Plan plan_by_steps(const World& world, const Task& task, Policy& policy, Deadline deadline, const Report& report) {
-  Ticker ticker(deadline, report, kStepsPerTick);
+  Ticker ticker(deadline, report, /*every=*/1);  // a step may take as long as the policy likes
   const End end = task.ends_anywhere() ? End::anywhere() : End::at(task.end);
   Episode episode(world, {.budget = task.budget, .end = end, .action_space = action_space_of(world)});
   episode.reset(task.start);

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <functional>
 
-#include "graphdrl/base/error.h"
-
 namespace graphdrl {
 namespace {
 
-constexpr std::size_t kLadder = 4;
-constexpr const char* kLadderNames[kLadder] = {"random-walk", "dfs", "nearest", "exact"};
+constexpr std::size_t kLadderSize = 4;
+constexpr const char* kLadderNames[kLadderSize] = {"random-walk", "dfs", "nearest", "exact"};
 
 // The mean of what some maps have; empty where one has none.
 std::optional<double> mean_over(const std::vector<std::size_t>& maps,
@@ -35,6 +33,7 @@ class Table {
     for (std::size_t seed = 0; seed < seeds_; ++seed) means.push_back(*mean_of(seed, maps));
     const Summary summary = summarise(means);
     SeedRow row{.name = std::move(name),
+                .several = maps.size() > 1,
                 .means = means,
                 .over_seeds = summary,
                 .lowest = quantile(means, 0),
@@ -122,8 +121,7 @@ std::string markdown_distribution(const SeedDistribution& distribution) {
       "optimum "
       "|\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const SeedRow& row : distribution.rows) {
-    const bool several = row.name == "unseen" || row.name == "all";
-    const std::string name = several ? "**" + row.name + "**" : row.name;
+    const std::string name = row.several ? "**" + row.name + "**" : row.name;
     text += fmt::format(
         "| {} | {:.1f} ± {} | {:.1f} – {:.1f} | {:.1f}, {:.1f}, {:.1f} | {} | {} | {:.1f} | {:.1f} | "
         "{:.1f} | {} |\n",

@@ -11,15 +11,17 @@ namespace graphdrl {
 
 // Coverages in percent, from every valid node once.
 struct SeedRow {
-  std::string name;           // a map, or several: "unseen" or "all"
+  std::string name;  // a map; of several, "unseen" or "all"
+  bool several;
   std::vector<double> means;  // of each seed
   Summary over_seeds;         // of these
   double lowest;
   double lower_quartile;
   double median;
   double upper_quartile;
-  std::optional<double> paper;    // the paper's mean over 30 episodes, of the same maps
-  std::optional<double> paper_z;  // (paper - mean) / std over seeds: how far from the mean one run of ours lies, too
+  std::optional<double> paper;  // the paper's mean over 30 episodes, of the same maps
+  // (paper - mean) / std over seeds. The paper's mean is of 30 random starts; the error of that sample is not in it.
+  std::optional<double> paper_z;
   double random_walk;
   double depth_first;
   double nearest;

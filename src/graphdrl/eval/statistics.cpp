@@ -25,6 +25,17 @@ Summary summarise(std::span<const double> values) {
   return summary;
 }
 
+PairedDifference paired_difference(std::span<const double> one, std::span<const double> other) {
+  std::vector<double> differences(one.begin(), one.end());
+  for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= other[i];
+  const Summary summary = summarise(differences);
+  PairedDifference difference{.mean = summary.mean, .in_errors = {}};
+  if (summary.std && *summary.std > 0) {
+    difference.in_errors = summary.mean / (*summary.std / std::sqrt(static_cast<double>(summary.count)));
+  }
+  return difference;
+}
+
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + std::ssize(values) / 2, values.end());
   return values[values.size() / 2];

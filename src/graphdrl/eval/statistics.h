@@ -24,6 +24,14 @@ struct Summary {
 // REQUIRES: values is not empty.
 Summary summarise(std::span<const double> values);
 
+// Of two samples whose values belong together, such as those of the same seeds.
+struct PairedDifference {
+  double mean;                      // of one less the other
+  std::optional<double> in_errors;  // mean / (std / √n); empty where the differences do not vary
+};
+// REQUIRES: as many of each, at least one.
+PairedDifference paired_difference(std::span<const double> one, std::span<const double> other);
+
 // The upper one of the two in the middle where their number is even. REQUIRES: values is not empty.
 double median(std::vector<double> values);
 

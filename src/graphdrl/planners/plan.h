@@ -25,7 +25,8 @@ Deadline deadline_after(TimeLimit limit);
 void stop_planning();
 
 // Within its scope, planners on this thread, and in the tasks of its parallel loops, end when a flag becomes true, as
-// if their deadlines had passed. The flag must outlive the scope.
+// if their deadlines had passed. The flag must outlive the scope. The flag of an inner scope replaces that of an outer
+// one.
 class StopScope {
  public:
   explicit StopScope(const std::atomic<bool>& stop);
@@ -36,7 +37,7 @@ class StopScope {
   const void* before_;
 };
 
-// Whether one of these asks the caller's thread to end.
+// Whether stop_planning() or a StopScope asks this thread's planner to end.
 bool planning_stopped();
 
 inline bool passed(Deadline deadline) {

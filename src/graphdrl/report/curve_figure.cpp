@@ -74,7 +74,7 @@ Axes axes_of(const CurvePanel& panel, Point corner) {
   if (low > high) low = high = 0;  // no point at all
   low = panel.low.value_or(low);
   high = panel.high.value_or(high);
-  return {corner, last > 0 ? last : 1, low, high > low ? high : low + 1};
+  return {corner, last > 0 ? last : 1, low, high > low ? high : low + std::max(1.0, std::abs(low))};
 }
 
 }  // namespace

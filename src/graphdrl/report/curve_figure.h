@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "graphdrl/graph/point.h"
@@ -18,7 +17,7 @@ struct CurvePanel {
   std::optional<double> high = {};
 };
 
-// The mean of several curves where all that reach it are known, and what lies between the lowest and the highest.
+// The mean, the lowest and the highest of several curves, at each x that all of them have.
 struct CurveBand {
   std::vector<Point> mean;
   std::vector<Point> lowest;   // as long

@@ -1,10 +1,13 @@
 #include "graphdrl/train/finished_runs.h"
 
+#include <set>
 #include <sstream>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
+#include "graphdrl/train/checkpoint.h"
+#include "graphdrl/train/paper_recipe.h"
 #include "graphdrl/train/seed_runs.h"
 
 namespace graphdrl {
@@ -17,7 +20,7 @@ const char* counter_of(const TrainOptions& options) {
 }
 
 FinishedRun read_finished_run(const RunDirectory& directory) {
-  FinishedRun run{.directory = directory, .options = read_config(directory.config()), .metrics = {}};
+  FinishedRun run{.directory = directory, .options = read_config(directory.config()), .metrics = {}, .maps = {}};
   const std::string source = directory.metrics().string();
   const std::string text = read_file(source);
   std::istringstream lines(text);
@@ -29,11 +32,15 @@ FinishedRun read_finished_run(const RunDirectory& directory) {
   }
   const char* const counter = counter_of(run.options);
   const std::int64_t all = run.options.preset == kPaperPreset ? run.options.episodes : run.options.rounds;
-  const Json done = run.metrics.empty() ? Json(0) : run.metrics.back().value(counter, Json(0));
+  const Checkpoint checkpoint = Checkpoint::read(directory.checkpoint(), run.options.preset);
+  const std::int64_t done = checkpoint.progress().done;
+  if (run.options.preset == kPaperPreset) {
+    for (const World& world : worlds_of(checkpoint)) run.maps.push_back(world.name());
+  }
   if (done != all) {
     throw Error({.what = "the run is not finished",
                  .expected = std::to_string(all) + " " + counter + "s",
-                 .got = done.dump(),
+                 .got = std::to_string(done),
                  .where = directory.path().string()});
   }
   return run;
@@ -52,7 +59,13 @@ std::vector<FinishedRun> read_finished_runs(const std::vector<std::string>& path
       runs.push_back(read_finished_run(SeedRuns::run_directory_in(path, seed)));
     }
   }
+  std::set<std::uint64_t> seeds;
   for (const FinishedRun& run : runs) {
+    if (!seeds.insert(run.options.seed).second) {
+      throw Error({.what = "two runs of seed " + std::to_string(run.options.seed),
+                   .expected = "each seed once",
+                   .where = run.directory.path().string()});
+    }
     TrainOptions same = run.options;
     same.seed = runs.front().options.seed;
     if (config_json(same) == config_json(runs.front().options)) continue;

@@ -15,10 +15,11 @@ struct FinishedRun {
   RunDirectory directory;
   TrainOptions options;
   std::vector<nlohmann::ordered_json> metrics;  // the lines of metrics.jsonl
+  std::vector<std::string> maps;                // names of the worlds trained on; none of an explorer's
 };
 
-// Run directories, and folders of many seeds. Throws Error where a run is not finished, or where they differ in more
-// than their seeds.
+// Run directories, and folders of many seeds. Throws Error where a run is not finished, where they differ in more than
+// their seeds, or where a seed is there twice.
 std::vector<FinishedRun> read_finished_runs(const std::vector<std::string>& paths);
 
 // A metric over episodes or rounds; without the lines where it has no value yet. Throws Error where no line has it.

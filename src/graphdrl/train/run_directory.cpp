@@ -5,13 +5,16 @@
 
 namespace graphdrl {
 
-void RunDirectory::create() const {
+void RunDirectory::require_new() const {
   std::error_code error;
-  if (std::filesystem::exists(checkpoint(), error)) {
-    throw Error({.what = "the folder holds a run already",
-                 .expected = "a new folder, or --resume to go on with that run",
-                 .where = path_.string()});
-  }
+  if (!std::filesystem::exists(checkpoint(), error)) return;
+  throw Error({.what = "the folder holds a run already",
+               .expected = "a new folder, or --resume to go on with that run",
+               .where = path_.string()});
+}
+
+void RunDirectory::create() const {
+  require_new();
   prepare_folder(path_);
 }
 

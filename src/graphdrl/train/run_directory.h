@@ -12,6 +12,8 @@ class RunDirectory {
 
   // Throws Error where the folder holds a run already, or cannot be written.
   void create() const;
+  // Throws Error where the folder holds a run already.
+  void require_new() const;
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path config() const { return path_ / "config.json"; }

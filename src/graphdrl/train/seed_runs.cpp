@@ -112,9 +112,9 @@ SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t>
                  .where = folder.string()});
   }
   const SeedsFile file{.seeds = std::move(seeds), .options = options};
-  // The first one is begun before anything is written: it refuses what all would.
-  const PlannedRun first = planned_runs(file, folder).front();
-  Trainer::start(first.options, first.directory, make_learner);
+  Trainer::check(options, make_learner);
+  for (const PlannedRun& run : planned_runs(file, folder)) run.directory.require_new();
+  prepare_folder(folder);
   Json json = config_json(options);
   json.erase("seed");
   json[kSeedsKey] = file.seeds;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "graphdrl/base/error.h"
@@ -12,10 +13,23 @@
 
 namespace graphdrl {
 
+namespace {
+
+// But for the maps: a folder may have been moved, and the checkpoint holds them.
+void require_same_options(const PlannedRun& run) {
+  TrainOptions found = read_config(run.directory.config());
+  found.maps = run.options.maps;
+  if (config_json(found) == config_json(run.options)) return;
+  throw Error({.what = "the folder holds a run of other options", .where = run.directory.path().string()});
+}
+
+}  // namespace
+
 SideBySide::SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group)
     : runs_(std::move(runs)), make_learner_(std::move(make_learner)), make_group_(std::move(make_group)) {
   for (const PlannedRun& run : runs_) {
     const bool there = std::filesystem::exists(run.directory.checkpoint());
+    if (there) require_same_options(run);
     const auto trainer = there ? Trainer::resume(run.directory, make_learner_)
                                : Trainer::start(run.options, run.directory, make_learner_);
     progress_.push_back(trainer->progress());

@@ -25,8 +25,8 @@ struct SideBySideNews {
 
 class SideBySide {
  public:
-  // Begins the runs that are not there yet, and reads where the others stand. Throws Error, as Trainer does. REQUIRES:
-  // at least one run; all of one preset, length and device.
+  // Begins the runs that are not there yet, and reads where the others stand. Throws Error, as Trainer does, and where
+  // a directory holds a run of other options. REQUIRES: at least one run; all of one preset, length and device.
   // make_group: for another device than the CPU; then all runs have the same options but for their seeds.
   SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {});
 

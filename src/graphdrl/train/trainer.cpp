@@ -24,6 +24,11 @@ Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint
   rng_ = from->rng();
 }
 
+void Trainer::check(const TrainOptions& options, const MakePaperLearner& make_learner) {
+  validate(options);
+  Trainer(options, RunDirectory(""), nullptr, make_learner, {});
+}
+
 std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDirectory& run,
                                         const MakePaperLearner& make_learner, std::vector<World> worlds) {
   validate(options);

@@ -24,6 +24,9 @@ struct TrainingNews {
 // that a resumed run ends with the bytes of one that was never interrupted.
 class Trainer {
  public:
+  // Throws Error on what start() would refuse before it writes anything.
+  static void check(const TrainOptions& options, const MakePaperLearner& make_learner = make_paper_cpu_learner);
+
   // Begins a new run: writes the configuration and checkpoint 0. Throws Error on bad options and where the directory
   // cannot be written. `make_learner`: for the paper's device. worlds: instead of options.maps, where there are any.
   static std::unique_ptr<Trainer> start(const TrainOptions& options, const RunDirectory& run,

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "graphdrl/base/error.h"
@@ -51,7 +50,13 @@ std::vector<Setting> draw_settings(int count, std::uint64_t seed) {
   std::vector<Setting> settings = {Setting::object()};
   std::size_t all = 1;
   for (const auto& [option, values] : search_space()) all *= values.size();
-  while (std::ssize(settings) < count && settings.size() < all) {
+  if (static_cast<std::size_t>(count) > all) {
+    throw Error({.what = "more settings than there are",
+                 .expected = fmt::format("at most {}", all),
+                 .got = std::to_string(count),
+                 .where = "--rounds"});
+  }
+  while (std::ssize(settings) < count) {
     Setting setting = Setting::object();
     for (const auto& [option, values] : search_space()) {
       const Json& value = values[rng.below(static_cast<std::uint32_t>(values.size()))];
@@ -132,18 +137,18 @@ Tuning::Tuning(TuneOptions options, std::vector<Setting> settings, std::filesyst
       make_learner_(std::move(make_learner)) {}
 
 Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, MakePaperLearner make_learner) {
-  if (std::filesystem::exists(tune_file(folder))) {
+  if (std::filesystem::exists(tune_file(folder)) || std::filesystem::exists(folder / "maps")) {
     throw Error({.what = "the folder holds a search already",
                  .expected = "a new folder, or --resume to go on with it",
                  .where = folder.string()});
   }
   options_of(options, Setting::object(), "");  // refuses what all would
+  std::vector<Setting> settings = draw_settings(options.rounds.front().settings, options.seed);
   std::set<std::vector<bool>> taken;
   for (const World& world : load_worlds({"paper"})) taken.insert(world.map()->blocked);
   write_maps(folder / "maps" / "validation", Split::kValidation, options.validation_maps, taken);
   write_maps(folder / "maps" / "train", Split::kTrain, options.train_maps, taken);
-  Tuning tuning(options, draw_settings(options.rounds.front().settings, options.seed), std::move(folder),
-                std::move(make_learner));
+  Tuning tuning(options, std::move(settings), std::move(folder), std::move(make_learner));
   const Json json = {{"options", to_json(options)}, {"settings", tuning.settings_}};
   write_file(tune_file(tuning.folder_), json.dump(2) + '\n');
   return tuning;
@@ -181,10 +186,10 @@ Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learne
 // The paper's, then the others: all of them, or the best of the round before.
 std::vector<std::size_t> Tuning::settings_of(std::size_t round) const {
   std::vector<std::size_t> chosen = {0};
-  const std::size_t known = round == 0 ? settings_.size() : scores_[round - 1].settings.size();
+  const std::size_t known = round == 0 ? settings_.size() : scores_[round - 1].size();
   const std::size_t count = std::min(known, static_cast<std::size_t>(options_.rounds[round].settings));
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t setting = round == 0 ? i : scores_[round - 1].settings[i].setting;
+    const std::size_t setting = round == 0 ? i : scores_[round - 1][i].setting;
     if (setting != 0) chosen.push_back(setting);
   }
   return chosen;
@@ -192,10 +197,13 @@ std::vector<std::size_t> Tuning::settings_of(std::size_t round) const {
 
 std::vector<PlannedRun> Tuning::runs_of(std::size_t round) const {
   std::vector<PlannedRun> runs;
+  std::uint64_t used = 0;  // seeds, in the rounds before
+  for (std::size_t before = 0; before < round; ++before)
+    used += static_cast<std::uint64_t>(options_.rounds[before].seeds);
   for (const std::size_t setting : settings_of(round)) {
     TrainOptions options = options_of(options_, settings_[setting], folder_ / "maps" / "train");
     for (int i = 0; i < options_.rounds[round].seeds; ++i) {
-      options.seed = derive_seed(options_.seed, kPurpose, 1 + 1000 * round + static_cast<std::uint64_t>(i));
+      options.seed = derive_seed(options_.seed, kPurpose, 1 + used + static_cast<std::uint64_t>(i));
       runs.push_back({options, RunDirectory(folder_ / fmt::format("round-{}", round + 1) /
                                             fmt::format("setting-{:02}", setting) / fmt::format("seed-{}", i + 1))});
     }
@@ -224,18 +232,16 @@ RoundScores Tuning::score(std::size_t round) const {
   for (const std::size_t setting : settings_of(round)) {
     SettingScore score{.setting = setting, .by_seed = {}, .over_seeds = {}, .over_paper = 0, .over_paper_errors = {}};
     for (std::size_t i = 0; i < seeds; ++i) {
-      score.by_seed.push_back(*result.overall[scores.settings.size() * seeds + i].mean);
+      score.by_seed.push_back(*result.overall[scores.size() * seeds + i].mean);
     }
     score.over_seeds = summarise(score.by_seed);
-    const Summary& paper = scores.settings.empty() ? score.over_seeds : scores.settings.front().over_seeds;
-    score.over_paper = score.over_seeds.mean - paper.mean;
-    if (setting != 0 && paper.std) {
-      const double error = std::hypot(*paper.std, *score.over_seeds.std) / std::sqrt(static_cast<double>(seeds));
-      if (error > 0) score.over_paper_errors = score.over_paper / error;
-    }
-    scores.settings.push_back(std::move(score));
+    const std::vector<double>& paper = scores.empty() ? score.by_seed : scores.front().by_seed;
+    const PairedDifference difference = paired_difference(score.by_seed, paper);
+    score.over_paper = difference.mean;
+    score.over_paper_errors = difference.in_errors;
+    scores.push_back(std::move(score));
   }
-  std::stable_sort(scores.settings.begin(), scores.settings.end(),
+  std::stable_sort(scores.begin(), scores.end(),
                    [](const auto& one, const auto& other) { return one.over_seeds.mean > other.over_seeds.mean; });
   return scores;
 }
@@ -245,7 +251,7 @@ std::vector<ValueEffect> Tuning::effects() const {
   for (const auto& [option, values] : search_space()) {
     for (const Json& value : values) {
       std::vector<double> means;
-      for (const SettingScore& score : scores_.front().settings) {
+      for (const SettingScore& score : scores_.front()) {
         if (settings_[score.setting].value(option, paper_value(option)) == value) {
           means.push_back(score.over_seeds.mean);
         }

@@ -41,12 +41,10 @@ struct SettingScore {
   std::size_t setting;
   std::vector<double> by_seed;
   Summary over_seeds;
-  double over_paper;                        // its mean less that of the paper's setting
-  std::optional<double> over_paper_errors;  // the same, in standard errors of the difference
+  double over_paper;                        // the mean difference to the paper's setting, seed by seed
+  std::optional<double> over_paper_errors;  // the same, in standard errors of that mean
 };
-struct RoundScores {
-  std::vector<SettingScore> settings;  // the best first
-};
+using RoundScores = std::vector<SettingScore>;  // the best first
 
 // How the settings of the first round that share a value do.
 struct ValueEffect {
