@@ -125,7 +125,7 @@ GRAPHDRL_API double graphdrl_result_cost(const graphdrl_result* result);
 GRAPHDRL_API double graphdrl_result_budget(const graphdrl_result* result); /* in units of cost */
 GRAPHDRL_API double graphdrl_result_bound(const graphdrl_result* result);  /* no walk has a higher prize */
 GRAPHDRL_API int32_t
-graphdrl_result_optimal(const graphdrl_result* result); /* 1 if it is proved that no walk has a higher prize, else 0 */
+graphdrl_result_optimal(const graphdrl_result* result); /* 1 if proved: no walk has a higher prize */
 /* The document of `graphdrl plan --json`; it lives as long as the result. "" if memory ran out. */
 GRAPHDRL_API const char* graphdrl_result_json(const graphdrl_result* result);
 /* Writes it in the format of the ending, as `graphdrl plan --out`. */
