@@ -1,7 +1,7 @@
 """Visit as many nodes of a graph as a budget allows: plans with bounds, on any graph or map."""
 
-from ._core import FAMILIES, Error, State, __version__, set_threads, threads
-from .planning import Plan, evaluate, plan, upper_bound
+from ._core import FAMILIES, Error, State, __version__, threads
+from .planning import Plan, evaluate, plan, set_threads, upper_bound
 from .policies import Explorer, FirstVisits, PaperNetwork, Policy
 from .training import Run, resume, train
 from .world import World

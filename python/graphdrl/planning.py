@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Error
+from .checks import flag, function, listed, number, path_text, shown, text, whole_number, wrong
 from .policies import Policy
-from .world import Budget, Node, OnProgress, World, budget_text, shown
+from .world import Budget, Node, OnProgress, World, budget_text
 
 OwnPolicy = Callable[[_core.State], int | None]
 
@@ -97,7 +98,7 @@ class Plan:
             Error: an ending that is not known, or needs coordinates that the world lacks; a file that cannot be
                 written.
         """
-        self._core.save(os.fspath(path))
+        self._core.save(path_text(path))
 
     def to_json(self) -> str:
         """The document that `graphdrl plan --json` prints."""
@@ -143,19 +144,19 @@ def _numbers(world: World, start: Node | None, end: Node | None) -> tuple[int | 
 
 def _require_world(world: World) -> World:
     if not isinstance(world, World):
-        raise TypeError(f"expected a graphdrl.World, got {type(world).__name__}")
+        raise Error(f"expected a World, got {shown(world)}: World.from_file(), from_networkx() … make one")
     return world
 
 
 def policy_of(policy: str | Policy | OwnPolicy) -> tuple[str, Any]:
     """What a policy is called, and what it is unless it is known by that name."""
     if isinstance(policy, str):
-        return policy, None
+        return text(policy, "policy"), None
     if isinstance(policy, Policy):
         return policy.name, policy._core
     if callable(policy):
         return getattr(policy, "__name__", type(policy).__name__), policy
-    raise Error(f"bad policy: expected a name, a Policy or a callable, got {shown(policy)}")
+    raise wrong("policy", "a name, a Policy or a callable", policy)
 
 
 def plan(
@@ -194,9 +195,12 @@ def plan(
         raise Error(f"{world.name}: no budget is given")
     first, last = _numbers(world, start, end)
     name, own = policy_of(policy)
-    return Plan(
-        world, _core.plan(core, budget_text(budget), first, last, name, own, time_limit, seed, on_progress)
-    )
+    limit = None if time_limit is None else number(time_limit, "time limit")
+    report = _core.plan(
+        core, budget_text(budget), first, last, name, own, limit, whole_number(seed, "seed"),
+        function(on_progress, "on_progress"),
+    )  # fmt: skip
+    return Plan(world, report)
 
 
 def upper_bound(
@@ -219,10 +223,11 @@ def upper_bound(
     Raises:
         Error: a blocked or missing node, a bad budget or time limit.
     """
-    if time_limit is not None and not 0 <= time_limit <= 1e6:
-        raise Error(f"bad time limit: expected 0 to 1000000 seconds, got {shown(time_limit)}")
+    limit = None if time_limit is None else number(time_limit, "time limit")
+    if limit is not None and not 0 <= limit <= 1e6:
+        raise wrong("time limit", "0 to 1000000 seconds", time_limit)
     first, last = _numbers(_require_world(world), start, end)
-    return _core.upper_bound(world._core, budget_text(budget), first, last, time_limit)
+    return _core.upper_bound(world._core, budget_text(budget), first, last, limit)
 
 
 def evaluate(
@@ -255,10 +260,11 @@ def evaluate(
     Raises:
         Error: a bad budget, end or policy. What a policy of your own raises comes out as it is.
     """
-    worlds = [worlds] if isinstance(worlds, World) else list(worlds)
-    chosen = [policies] if isinstance(policies, (str, Policy)) or callable(policies) else list(policies)
-    if not isinstance(episodes, int) or not 1 <= episodes <= 1_000_000:
-        raise Error(f"bad number of episodes: expected 1 to 1000000, got {shown(episodes)}")
+    several = not isinstance(worlds, (World, str)) and isinstance(worlds, Iterable)
+    worlds = [_require_world(world) for world in (worlds if several else [worlds])]
+    one = isinstance(policies, (str, Policy)) or callable(policies)
+    chosen = [policies] if one else listed(policies, "policies", "names, Policies or callables")
+    episodes = whole_number(episodes, "number of episodes", 1, 1_000_000)
     names: list[str] = []
     own: dict[str, Any] = {}
     for policy in chosen:
@@ -268,6 +274,19 @@ def evaluate(
                 name += "'"
             own[name] = its_own
         names.append(name)
-    text = None if budget is None else budget_text(budget)
-    cores = [_require_world(world)._core for world in worlds]
-    return _core.evaluate(cores, names, own, text, end, episodes, all_starts, seed)
+    return _core.evaluate(
+        [world._core for world in worlds], names, own, None if budget is None else budget_text(budget),
+        text(end, "end"), episodes, flag(all_starts, "all_starts"), whole_number(seed, "seed"),
+    )  # fmt: skip
+
+
+def set_threads(count: int) -> None:
+    """Sets how many threads one call may use. Results do not depend on it.
+
+    Args:
+        count: 1 to 1024, 1 at first.
+
+    Raises:
+        Error: any other.
+    """
+    _core.set_threads(whole_number(count, "number of threads", 1, 1024))

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._core import Error, State
-from .world import shown
+from .checks import listed, path_text, shown, text, whole_number, wrong
 
 
 class FirstVisits(NamedTuple):
@@ -50,11 +50,13 @@ class Policy:
         if type(self) is Policy:
             raise TypeError("a Policy is an Explorer or a PaperNetwork: Policy.load() finds out which")
         self._core = self._kind(self._arrays(tensors))
-        self.name = name or type(self).__name__
+        self.name = text(name or type(self).__name__, "name")
 
     @classmethod
     def _arrays(cls, tensors: Mapping[str, ArrayLike]) -> list[NDArray[np.float32]]:
         """In the order of the network's tensors."""
+        if not isinstance(tensors, Mapping):
+            raise wrong("tensors", "a dictionary by PyTorch's names", tensors)
         names = [spec[0] for spec in cls._kind.specs]
         strange = sorted(set(map(str, tensors)) ^ set(names))
         if strange:
@@ -85,7 +87,7 @@ class Policy:
         Raises:
             Error: a file that cannot be read, or is no policy.
         """
-        file = os.fspath(path)
+        file = path_text(path)
         if file == "explorer":
             return Explorer._of(_core.Explorer.builtin(), file)
         name = pathlib.Path(file).stem
@@ -117,7 +119,7 @@ class Policy:
             `node_x` [N, 20]; `current` [B], a row of `node_x`; `visit_x` [C, 11]; `target` [C], a row of `node_x`; and
             `state` [C].
         """
-        return self._core.inputs([states] if isinstance(states, State) else list(states))
+        return self._core.inputs(_states(states))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a policy file (safetensors), which `load` and `graphdrl` read.
@@ -128,7 +130,7 @@ class Policy:
         Raises:
             Error: a file that cannot be written.
         """
-        self._core.save(os.fspath(path))
+        self._core.save(path_text(path))
 
     def export_onnx(self, path: str | os.PathLike[str]) -> None:
         """Writes an ONNX model (opset 16), as `graphdrl export`. Its inputs are those that `inputs` gives.
@@ -141,7 +143,7 @@ class Policy:
         Raises:
             Error: a file that cannot be written.
         """
-        self._core.export_onnx(os.fspath(path))
+        self._core.export_onnx(path_text(path))
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name}: {self.parameter_count} parameters>"
@@ -171,7 +173,7 @@ class Explorer(Policy):
         Raises:
             Error: a state that is over.
         """
-        nodes, costs, shortfalls, ceiling, choice = self._core.first_visits(state)
+        nodes, costs, shortfalls, ceiling, choice = self._core.first_visits(*_states([state]))
         return FirstVisits(nodes, costs, shortfalls, ceiling, None if choice < 0 else choice)
 
 
@@ -195,7 +197,7 @@ class PaperNetwork(Policy):
             Error: bad tensors, as of any Policy; another `wall`.
         """
         self._core = self._kind(self._arrays(tensors), str(wall))
-        self.name = name or type(self).__name__
+        self.name = text(name or type(self).__name__, "name")
 
     @property
     def wall(self) -> str:
@@ -212,7 +214,7 @@ class PaperNetwork(Policy):
         Args:
             seed: from 0 up.
         """
-        return cls._of(_core.PaperNetwork.random(seed), f"random-{seed}")
+        return cls._of(_core.PaperNetwork.random(whole_number(seed, "seed")), f"random-{seed}")
 
     def q_values(self, states: State | Iterable[State]) -> NDArray[np.float32]:
         """What the network expects of each direction: the discounted sum of rewards [paper, eq. 5].
@@ -228,4 +230,12 @@ class PaperNetwork(Policy):
         """
         if isinstance(states, State):
             return self._core.q_values([states])[0]
-        return self._core.q_values(list(states))
+        return self._core.q_values(_states(states))
+
+
+def _states(states: State | Iterable[State]) -> list[State]:
+    given = [states] if isinstance(states, State) else listed(states, "states", "a State or several")
+    for state in given:
+        if not isinstance(state, State):
+            raise wrong("state", "a State, as World.state() makes", state)
+    return given

@@ -12,8 +12,8 @@ import pathlib
 from collections.abc import Sequence
 
 from ._core import Error
+from .checks import path_text, shown
 from .policies import PaperNetwork
-from .world import shown
 
 __all__ = ["read_published"]
 
@@ -33,7 +33,7 @@ def read_published(path: str | os.PathLike[str]) -> PaperNetwork:
     """
     import torch
 
-    file = os.fspath(path)
+    file = path_text(path)
     try:
         with open(file, "rb") as stream:
             state = torch.load(stream, map_location="cpu", weights_only=True)

@@ -10,8 +10,9 @@ from typing import Any
 
 from . import _core
 from ._core import Error
+from .checks import function, listed, path_text, shown
 from .policies import Explorer, PaperNetwork, Policy
-from .world import World, shown
+from .world import World
 
 OnMetrics = Callable[[dict[str, Any]], Any]
 
@@ -25,7 +26,7 @@ class Run:
     """
 
     def __init__(self, path: str | os.PathLike[str], finished: bool | None = None) -> None:
-        self.path = pathlib.Path(path)
+        self.path = pathlib.Path(path_text(path))
         """The folder."""
         self.finished = finished
         """Whether all is trained; None where this object did not train it."""
@@ -85,7 +86,7 @@ def train(
     """
     worlds: list[World] = []
     if maps is not None:
-        sources = [maps] if isinstance(maps, (str, World)) else list(maps)
+        sources = [maps] if isinstance(maps, (str, World)) else listed(maps, "maps", "names, files or worlds")
         if any(isinstance(source, World) for source in sources):
             worlds = [source if isinstance(source, World) else World.from_file(source) for source in sources]
         options["maps"] = [source.name if isinstance(source, World) else source for source in sources]
@@ -94,7 +95,7 @@ def train(
         text = json.dumps(options, allow_nan=False)
     except (TypeError, ValueError) as error:
         raise Error(f"bad options of a training: {shown(options)}") from error
-    finished = _core.train(os.fspath(out), text, [world._core for world in worlds], on_metrics)
+    finished = _core.train(path_text(out), text, [world._core for world in worlds], function(on_metrics, "on_metrics"))
     return Run(out, finished)
 
 
@@ -109,4 +110,4 @@ def resume(run: str | os.PathLike[str] | Run, *, on_metrics: OnMetrics | None = 
         Error: a folder that holds no checkpoint.
     """
     path = run.path if isinstance(run, Run) else run
-    return Run(path, _core.resume(os.fspath(path), on_metrics))
+    return Run(path, _core.resume(path_text(path), function(on_metrics, "on_metrics")))

@@ -13,6 +13,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._core import Error
+from .checks import (
+    LARGEST_INT,
+    flag,
+    listed,
+    number,
+    path_text,
+    shown,
+    text,
+    whole_number,
+    wrong,
+)
 
 _COST_NAMES = ("weight", "cost", "length", "distance")
 _PRIZE_NAMES = ("prize", "score")
@@ -23,19 +34,14 @@ Node = Hashable
 Budget = float | int | str
 
 
-def shown(value: Any) -> str:
-    """A value on one line of an error."""
-    return " ".join(repr(value).split())[:100]
-
-
 def budget_text(budget: Budget) -> str:
     """As the command line takes it."""
     if isinstance(budget, str):
-        return budget
+        return text(budget, "budget")
     try:
         return repr(float(budget))
-    except (TypeError, ValueError) as error:
-        raise Error(f"bad budget: expected a number from 0 up, or text like '1.1x', got {shown(budget)}") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise wrong("budget", "a number from 0 up, or text like '1.1x'", budget) from error
 
 
 def _array(values: ArrayLike, dtype: type, name: str, kinds: str) -> NDArray[Any]:
@@ -122,8 +128,16 @@ class World:
         array = _array(cells, bool, "grid", "biu")
         if array.ndim != 2:
             raise Error(f"bad shape of a grid: expected two dimensions, got {array.ndim}")
-        frame = None if cell_size is None else (float(cell_size), float(origin[0]), float(origin[1]), 0.0, unit)
-        return cls(_core.World.grid(name, array, diagonals, cut_corners, frame))
+        frame = None
+        if cell_size is not None:
+            corner = [number(x, "origin") for x in listed(origin, "origin", "x and y")]
+            if len(corner) != 2:
+                raise wrong("origin", "x and y", origin)
+            frame = (number(cell_size, "cell_size"), *corner, 0.0, text(unit, "unit"))
+        core = _core.World.grid(
+            text(name, "name"), array, flag(diagonals, "diagonals"), flag(cut_corners, "cut_corners"), frame
+        )
+        return cls(core)
 
     @classmethod
     def from_edges(
@@ -163,8 +177,10 @@ class World:
         if ends.ndim != 2 or ends.shape[1] != 2:
             raise Error(f"bad shape of edges: expected (E, 2), got {ends.shape}")
         if labels is not None:
-            labels = list(labels.tolist() if isinstance(labels, np.ndarray) else labels)
-        if node_count is None:
+            labels = listed(labels.tolist() if isinstance(labels, np.ndarray) else labels, "labels", "one of each node")
+        if node_count is not None:
+            node_count = whole_number(node_count, "node_count", 0, LARGEST_INT)
+        else:
             node_count = len(labels) if labels is not None else int(ends.max(initial=-1)) + 1
         points = np.empty((0, 2))
         if places is not None:
@@ -172,16 +188,16 @@ class World:
             if points.shape != (node_count, 2):
                 raise Error(f"bad shape of places: expected ({node_count}, 2), got {points.shape}")
         core = _core.World.graph(
-            name,
+            text(name, "name"),
             node_count,
             ends,
             _flat(costs, np.float64, "costs", "fiu", len(ends)),
-            directed,
+            flag(directed, "directed"),
             _flat(blocked, bool, "blocked", "biu", node_count),
             _texts(labels),
             _flat(prizes, np.float64, "prizes", "fiu", node_count),
             points,
-            unit,
+            text(unit, "unit"),
             (None, _NO_NODE, _NO_NODE),
         )
         return cls(core, labels)
@@ -211,6 +227,8 @@ class World:
         Raises:
             Error: a cost, prize or coordinate that is no number, a cost or prize below 0.
         """
+        if not all(hasattr(graph, part) for part in ("nodes", "edges", "is_directed")):
+            raise wrong("graph", "a graph of networkx", graph)
         labels = list(graph.nodes)
         numbers = {label: number for number, label in enumerate(labels)}
         links = list(graph.edges(data=True))
@@ -220,15 +238,15 @@ class World:
         places, unit = _places_of(data)
         return cls.from_edges(
             [(numbers[a], numbers[b]) for a, b, _ in links],
-            None if cost is None else [_number(of_edge.get(cost, 1), cost) for _, _, of_edge in links],
+            None if cost is None else [number(of_edge.get(cost, 1), cost) for _, _, of_edge in links],
             node_count=len(labels),
             directed=graph.is_directed(),
             blocked=[bool(of_node.get(blocked, False)) for of_node in data],
-            prizes=None if prize is None else [_number(of_node.get(prize, 1), prize) for of_node in data],
+            prizes=None if prize is None else [number(of_node.get(prize, 1), prize) for of_node in data],
             places=places,
             unit=unit,
             labels=None if labels == list(range(len(labels))) and all(type(x) is int for x in labels) else labels,
-            name=name or str(graph.name or "graph"),
+            name=str(graph.name or "graph") if name is None else name,
         )
 
     @classmethod
@@ -243,6 +261,8 @@ class World:
         Raises:
             Error: a matrix that is not square, an entry below 0.
         """
+        if not hasattr(matrix, "tocoo"):
+            raise wrong("matrix", "a sparse matrix of SciPy", matrix)
         entries = matrix.tocoo()
         if entries.ndim != 2 or entries.shape[0] != entries.shape[1]:
             raise Error(f"bad shape of a matrix: expected a square one, got {entries.shape}")
@@ -279,9 +299,16 @@ class World:
             Error: no such file, a format that is not known, a mistake in it, with file and place.
         """
         core = _core.World.from_file(
-            os.fspath(path), cost_attribute, cell_pixels, unknown_is_free, robot_radius, cell_size, connectivity,
-            cut_corners, _warn,
-        )  # fmt: skip
+            path_text(path),
+            text(cost_attribute, "cost_attribute"),
+            whole_number(cell_pixels, "cell_pixels", 1, LARGEST_INT),
+            flag(unknown_is_free, "unknown_is_free"),
+            number(robot_radius, "robot_radius"),
+            None if cell_size is None else number(cell_size, "cell_size"),
+            whole_number(connectivity, "connectivity", 4, 8),
+            flag(cut_corners, "cut_corners"),
+            _warn,
+        )
         return cls(core, core.labels or None)
 
     @classmethod
@@ -308,7 +335,15 @@ class World:
         Raises:
             Error: no such family; a size, costs or directions that the family does not have.
         """
-        return cls(_core.World.random(family, size, seed, weighted, directed, blocked))
+        core = _core.World.random(
+            text(family, "family"),
+            whole_number(size, "size", 1, LARGEST_INT),
+            whole_number(seed, "seed"),
+            flag(weighted, "weighted"),
+            flag(directed, "directed"),
+            None if blocked is None else number(blocked, "blocked"),
+        )
+        return cls(core)
 
     @property
     def name(self) -> str:
@@ -393,13 +428,19 @@ class World:
 
         Args:
             numbers: of nodes, from 0 up.
+
+        Raises:
+            Error: no such node.
         """
+        last = self.node_count - 1
+        given = listed(numbers, "numbers", "numbers of nodes")
+        checked = [whole_number(node, "number of a node", 0, last) for node in given]
         if self._labels is not None:
-            return [self._labels[number] for number in numbers]
+            return [self._labels[node] for node in checked]
         if self.shape is not None:
             columns = self.shape[1]
-            return [divmod(int(number), columns) for number in numbers]
-        return [int(number) for number in numbers]
+            return [divmod(node, columns) for node in checked]
+        return checked
 
     def number(self, node: Node) -> int:
         """The number of a node.
@@ -438,7 +479,7 @@ class World:
         Raises:
             Error: a walk that cannot be walked, or costs more than the budget.
         """
-        nodes = np.array([self.number(node) for node in walk], np.int64)
+        nodes = np.array([self.number(node) for node in listed(walk, "walk", "nodes")], np.int64)
         return _core.State(self._core, nodes, budget_text(budget), None if end is None else self.number(end))
 
     def to_networkx(self) -> Any:
@@ -513,17 +554,10 @@ def _warn(text: str) -> None:
     warnings.warn(text, stacklevel=level)
 
 
-def _number(value: Any, name: str) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError) as error:
-        raise Error(f"bad {name}: expected a number, got {shown(value)}") from error
-
-
 def _texts(labels: Sequence[Node] | None) -> list[str]:
     """The labels as texts, for pictures and files; none where they would not tell nodes apart."""
     texts = [str(label) for label in labels or ()]
-    return texts if all(texts) and len(set(texts)) == len(texts) else []
+    return [text(label, "label") for label in texts] if all(texts) and len(set(texts)) == len(texts) else []
 
 
 def _places_of(data: Sequence[dict[str, Any]]) -> tuple[NDArray[np.float64] | None, str]:
@@ -531,11 +565,11 @@ def _places_of(data: Sequence[dict[str, Any]]) -> tuple[NDArray[np.float64] | No
     if data and all("pos" in of_node for of_node in data):
         pairs = [of_node["pos"] for of_node in data]
         if all(len(pair) == 2 for pair in pairs):
-            return np.array([[_number(x, "pos") for x in pair] for pair in pairs]), ""
+            return np.array([[number(x, "pos") for x in pair] for pair in pairs]), ""
     for x, y in _PLACE_NAMES:
         if data and all(x in of_node and y in of_node for of_node in data):
             unit = "degrees" if x == "lon" else ""
-            return np.array([[_number(of_node[x], x), _number(of_node[y], y)] for of_node in data]), unit
+            return np.array([[number(of_node[x], x), number(of_node[y], y)] for of_node in data]), unit
     return None, ""
 
 

@@ -241,8 +241,33 @@ def test_states_of_bad_walks():
         graphdrl.PaperNetwork.random().q_values(graph.state([0], 5))
     with pytest.raises(graphdrl.Error, match="no such file|cannot"):
         graphdrl.Policy.load("nowhere.safetensors")
-    with pytest.raises(TypeError):
-        graphdrl.Policy.load().first_visits(None)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: graphdrl.PaperNetwork.random(seed=-1), "bad seed: expected a whole number from 0 up, got -1"),
+        (lambda: graphdrl.PaperNetwork.random(seed="x"), "bad seed"),
+        (lambda: graphdrl.PaperNetwork.random(seed=None), "bad seed"),
+        (lambda: graphdrl.PaperNetwork.random().q_values(None), "bad states: expected a State or several, got None"),
+        (lambda: graphdrl.PaperNetwork.random().inputs([5]), "bad state: expected a State"),
+        (lambda: graphdrl.Policy.load().first_visits(None), "bad state: expected a State"),
+        (lambda: graphdrl.Policy.load(5), "bad path"),
+        (lambda: graphdrl.Policy.load().save(5), "bad path"),
+        (lambda: graphdrl.Explorer(5), "bad tensors"),
+        (lambda: graphdrl.PaperNetwork(graphdrl.PaperNetwork.random().tensors, name=5), "bad name"),
+        (lambda: graphdrl.train(5), "bad path"),
+        (lambda: graphdrl.train("run", maps=5), "bad maps"),
+        (lambda: graphdrl.train("run", on_metrics=3), "bad on_metrics: expected a function, got 3"),
+        (lambda: graphdrl.resume("run", on_metrics=3), "bad on_metrics: expected a function, got 3"),
+    ],
+)
+def test_wrong_types_are_errors_of_one_line(tmp_path, monkeypatch, call, message):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(graphdrl.Error, match=message) as error:
+        call()
+    assert "\n" not in str(error.value)
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("kind", ["paper", "explorer"])
