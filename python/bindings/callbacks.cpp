@@ -56,7 +56,11 @@ class CallablePolicy final : public Policy {
     const nb::object answer = choose_(state);
     if (answer.is_none()) return kStop;
     std::int64_t node = kNoNode;
-    if (!nb::try_cast(answer, node)) throw Error({.what = "the policy gave no node", .expected = "a node or None"});
+    if (!nb::try_cast(answer, node)) {
+      throw Error({.what = "the policy gave no node",
+                   .expected = "the number of a node, one of state.moves, or None",
+                   .got = nb::cast<std::string>(nb::module_::import_("graphdrl.checks").attr("shown")(answer))});
+    }
     for (int a = 0; a < observation.action_count(); ++a) {
       if (observation.target(a) == node && observation.affordable(a)) return a;
     }

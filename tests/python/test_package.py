@@ -164,7 +164,8 @@ def test_own_policies():
         _ = kept[0].moves
     with pytest.raises(graphdrl.Error, match="no step leads to"):
         graphdrl.evaluate(world, lambda state: 10**9)
-    with pytest.raises(graphdrl.Error, match="no node"):
+    expected = "gave no node: expected the number of a node, one of state.moves, or None, got 'left'"
+    with pytest.raises(graphdrl.Error, match=expected):
         graphdrl.evaluate(world, lambda state: "left")
     with pytest.raises(ZeroDivisionError):
         graphdrl.evaluate(world, lambda state: 1 // 0)
