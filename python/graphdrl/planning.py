@@ -142,6 +142,22 @@ def _numbers(world: World, start: Node | None, end: Node | None) -> tuple[int | 
     return first, world.number(end)
 
 
+def _end_text(worlds: list[World], end: Node | None) -> str:
+    """The end of walks in all worlds, as the command line takes it."""
+    if end is None:
+        return ""
+    if isinstance(end, str) and any(world._numbers is None or end not in world._numbers for world in worlds):
+        return text(end, "end")
+    numbers = {world.number(end) for world in worlds}
+    if len(numbers) == 1:
+        return f"#{numbers.pop()}"
+    if isinstance(end, str):
+        return text(end, "end")
+    if isinstance(end, (tuple, list)) and all(world.is_grid for world in worlds):
+        return ",".join(str(int(x)) for x in end)
+    raise wrong("end", "a text, or a node of the same number in all worlds", end)
+
+
 def _require_world(world: World) -> World:
     if not isinstance(world, World):
         raise Error(f"expected a World, got {shown(world)}: World.from_file(), from_networkx() … make one")
@@ -235,7 +251,7 @@ def evaluate(
     policies: str | Policy | OwnPolicy | Iterable[str | Policy | OwnPolicy] = ("nearest", "explorer", "search"),
     budget: Budget | None = None,
     *,
-    end: str = "",
+    end: Node | None = None,
     episodes: int = 30,
     all_starts: bool = False,
     seed: int = 1,
@@ -247,7 +263,8 @@ def evaluate(
         policies: one or more: a name as of `graphdrl plan --policy`, a Policy, or a callable. A callable gets a State
             and gives the number of the node to go to, one of `state.moves`, or None to stop.
         budget: in units of cost, or a text as `"1.1x"`; None for that of each world's file.
-        end: as `graphdrl evaluate --end`: `anywhere`, `start` or a node; by default the file's, else anywhere.
+        end: a node, `"start"` or `"anywhere"`, or a text as of `graphdrl evaluate --end`; by default the file's, else
+            anywhere. A node must be one of every world.
         episodes: walks of each policy on each world, where `all_starts` is false.
         all_starts: walk from each free node once.
         seed: of the starts, the search and random policies.
@@ -276,7 +293,7 @@ def evaluate(
         names.append(name)
     return _core.evaluate(
         [world._core for world in worlds], names, own, None if budget is None else budget_text(budget),
-        text(end, "end"), episodes, flag(all_starts, "all_starts"), whole_number(seed, "seed"),
+        _end_text(worlds, end), episodes, flag(all_starts, "all_starts"), whole_number(seed, "seed"),
     )  # fmt: skip
 
 

@@ -44,15 +44,27 @@ def budget_text(budget: Budget) -> str:
         raise wrong("budget", "a number from 0 up, or text like '1.1x'", budget) from error
 
 
-def _array(values: ArrayLike, dtype: type, name: str, kinds: str) -> NDArray[Any]:
-    """The values as a contiguous array; `kinds`: the kinds of dtypes that it may have had."""
+def _array(values: ArrayLike, dtype: type | None, name: str, kinds: str) -> NDArray[Any]:
+    """The values as a contiguous array; `dtype`: None for their own; `kinds`: those that it may have had."""
     try:
         array = np.asarray(values)
     except ValueError as error:
         raise Error(f"bad {name}: expected an array of numbers") from error
     if array.size and array.dtype.kind not in kinds:
-        raise Error(f"bad {name}: expected an array of {np.dtype(dtype).name}, got {array.dtype}")
+        expected = "numbers" if dtype is None else np.dtype(dtype).name
+        raise Error(f"bad {name}: expected an array of {expected}, got {array.dtype}")
     return np.ascontiguousarray(array, dtype=dtype) if array.size else np.empty(array.shape, dtype)
+
+
+def _cells(values: ArrayLike) -> NDArray[np.bool_]:
+    """What is blocked on a grid."""
+    array = _array(values, None, "grid", "biuf")
+    if array.dtype.kind != "b":
+        strange = array[(array != 0) & (array != 1)]
+        if strange.size:
+            expected = f"expected 0 (free) or 1 (blocked), got {strange.flat[0]}"
+            raise Error(f"bad cell of a grid: {expected}; for ROS maps see World.from_file")
+    return np.ascontiguousarray(array, bool)
 
 
 def _flat(values: ArrayLike | None, dtype: type, name: str, kinds: str, count: int) -> NDArray[Any]:
@@ -103,8 +115,8 @@ class World:
         """A grid of cells. Steps lead left, up, right and down, at a cost of 1.
 
         Args:
-            cells: an array [rows, columns], true (not 0) where blocked; or text, `#` blocked and `.` free. Row 0 is the
-                upper one.
+            cells: an array [rows, columns], true or 1 where blocked, false or 0 where free; or text, `#` blocked and
+                `.` free. Row 0 is the upper one.
             diagonals: steps lead to eight cells; a diagonal one costs √2.
             cut_corners: diagonal steps may pass blocked cells.
             cell_size: the side of a cell in `unit`: places the grid in the plane.
@@ -113,7 +125,8 @@ class World:
             name: of the world.
 
         Raises:
-            Error: rows of different lengths, characters other than `#` and `.`, no free cell.
+            Error: rows of different lengths, characters other than `#` and `.`, numbers other than 0 and 1, no free
+                cell.
         """
         if isinstance(cells, str):
             cells = cells.split("\n")
@@ -125,7 +138,7 @@ class World:
             if strange:
                 raise Error(f"bad grid: expected '#' and '.', got {min(strange)!r}")
             cells = [[char == "#" for char in row] for row in rows]
-        array = _array(cells, bool, "grid", "biu")
+        array = _cells(cells)
         if array.ndim != 2:
             raise Error(f"bad shape of a grid: expected two dimensions, got {array.ndim}")
         frame = None
@@ -214,34 +227,38 @@ class World:
     ) -> World:
         """A graph of networkx, of any of its four classes. The world does not change with it afterwards.
 
-        Coordinates are the nodes' `pos`, or `x` and `y`, or `lon` and `lat`. Of parallel edges the cheapest stays.
+        Coordinates are the nodes' `pos`, or `x` and `y`, or `lon` and `lat`, where all nodes have them; else they are
+        left out, with a warning. Of parallel edges the cheapest stays.
 
         Args:
             graph: its nodes become the world's labels.
             cost: the edges' attribute; by default the first of `weight`, `cost`, `length` and `distance` that an edge
-                has. An edge without it costs 1.
-            prize: the nodes' attribute; by default `prize` or `score`. A node without it is worth 1.
+                has. An edge without it costs 1; with `"none"` every edge does.
+            prize: the nodes' attribute; by default `prize` or `score`. A node without it is worth 1; with `"none"`
+                every node is.
             blocked: the nodes' attribute for obstacles.
             name: of the world; by default the graph's.
 
         Raises:
-            Error: a cost, prize or coordinate that is no number, a cost or prize below 0.
+            Error: a cost, prize or coordinate that is no number, a cost or prize below 0; a `cost` that no edge has, a
+                `prize` that no node has.
         """
         if not all(hasattr(graph, part) for part in ("nodes", "edges", "is_directed")):
             raise wrong("graph", "a graph of networkx", graph)
         labels = list(graph.nodes)
         numbers = {label: number for number, label in enumerate(labels)}
         links = list(graph.edges(data=True))
-        cost = cost or next((key for key in _COST_NAMES if any(key in data for _, _, data in links)), None)
         data = [graph.nodes[label] for label in labels]
-        prize = prize or next((key for key in _PRIZE_NAMES if any(key in of_node for of_node in data)), None)
+        cost = _attribute(cost, _COST_NAMES, [of_edge for _, _, of_edge in links], "cost", "edge")
+        prize = _attribute(prize, _PRIZE_NAMES, data, "prize", "node")
+        text(blocked, "blocked")
         places, unit = _places_of(data)
         return cls.from_edges(
             [(numbers[a], numbers[b]) for a, b, _ in links],
             None if cost is None else [number(of_edge.get(cost, 1), cost) for _, _, of_edge in links],
             node_count=len(labels),
             directed=graph.is_directed(),
-            blocked=[bool(of_node.get(blocked, False)) for of_node in data],
+            blocked=[_is_blocked(of_node.get(blocked, False), blocked) for of_node in data],
             prizes=None if prize is None else [number(of_node.get(prize, 1), prize) for of_node in data],
             places=places,
             unit=unit,
@@ -560,17 +577,53 @@ def _texts(labels: Sequence[Node] | None) -> list[str]:
     return [text(label, "label") for label in texts] if all(texts) and len(set(texts)) == len(texts) else []
 
 
+def _attribute(
+    name: str | None, usual: Sequence[str], data: Sequence[dict[str, Any]], role: str, owner: str
+) -> str | None:
+    """The attribute of edges or nodes that is a role: as named, or the first of the usual ones; None for 1 each."""
+    if name is None:
+        return next((key for key in usual if any(key in of_one for of_one in data)), None)
+    if text(name, role) == "none" or not data:
+        return None
+    if not any(name in of_one for of_one in data):
+        raise Error(f"bad {role}: no {owner} has this attribute: {shown(name)}")
+    return name
+
+
+def _is_blocked(value: Any, name: str) -> bool:
+    if isinstance(value, str):
+        raise wrong(name, "True or False", value)
+    return bool(value)
+
+
 def _places_of(data: Sequence[dict[str, Any]]) -> tuple[NDArray[np.float64] | None, str]:
-    """Coordinates where every node has some, and their unit."""
-    if data and all("pos" in of_node for of_node in data):
-        pairs = [of_node["pos"] for of_node in data]
-        if all(len(pair) == 2 for pair in pairs):
-            return np.array([[number(x, "pos") for x in pair] for pair in pairs]), ""
+    """Coordinates where every node has some, and their unit. Warns of those that are left out."""
+    why = None
+    having = [of_node["pos"] for of_node in data if "pos" in of_node]
+    if len(having) == len(data):
+        strange = [pair for pair in having if not _is_pair(pair)]
+        if having and not strange:
+            return np.array([[number(x, "pos") for x in pair] for pair in having]), ""
+        why = f"a node's pos is not x and y: {shown(strange[0])}" if strange else None
+    elif having:
+        why = f"pos is on {len(having)} of {len(data)} nodes"
     for x, y in _PLACE_NAMES:
-        if data and all(x in of_node and y in of_node for of_node in data):
+        count = sum(x in of_node and y in of_node for of_node in data)
+        if data and count == len(data):
             unit = "degrees" if x == "lon" else ""
             return np.array([[number(of_node[x], x), number(of_node[y], y)] for of_node in data]), unit
+        if count:
+            why = why or f"{x} and {y} are on {count} of {len(data)} nodes"
+    if why is not None:
+        _warn(f"the coordinates are left out: {why}")
     return None, ""
+
+
+def _is_pair(value: Any) -> bool:
+    try:
+        return not isinstance(value, str) and len(value) == 2
+    except TypeError:
+        return False
 
 
 OnProgress = Callable[[int, float], None]

@@ -288,6 +288,66 @@ def test_notes_are_warnings(tmp_path):
 
 
 GOOD = graphdrl.World.from_edges([[0, 1], [1, 2]])
+LABELLED = graphdrl.World.from_edges([[0, 1], [1, 2]], labels=["a", "start", ("c", 1)])
+TURNED = graphdrl.World.from_edges([[0, 1], [1, 2]], labels=[("c", 1), "start", "a"])
+
+
+def from_weighted(**options):
+    """A path of three nodes: one has a prize, one edge a weight."""
+    graph = nx.path_graph(3)
+    graph.edges[0, 1]["weight"] = 4
+    graph.nodes[1].update(prize=7, shut="false")
+    return graphdrl.World.from_networkx(graph, **options)
+
+
+def test_attributes_that_only_some_have():
+    assert from_weighted().edges()[1].tolist() == from_weighted(cost="weight").edges()[1].tolist() == [4, 1]
+    assert from_weighted().prizes.tolist() == from_weighted(prize="prize").prizes.tolist() == [1, 7, 1]
+    plain = from_weighted(cost="none", prize="none")
+    assert not plain.weighted and plain.total_prize == 3
+    assert graphdrl.World.from_networkx(nx.empty_graph(2), cost="weight").edge_count == 0
+
+
+@pytest.mark.parametrize(
+    ("places", "why"),
+    [
+        ([{"pos": (0, 0)}, {}], "pos is on 1 of 2 nodes"),
+        ([{"pos": (0, 0)}, {"pos": (1, 2, 3)}], r"a node's pos is not x and y: \(1, 2, 3\)"),
+        ([{"pos": (0, 0)}, {"pos": None}], "a node's pos is not x and y: None"),
+        ([{"pos": (0, 0)}, {"pos": "ab"}], "a node's pos is not x and y: 'ab'"),
+        ([{"x": 0, "y": 0}, {"x": 0}], "x and y are on 1 of 2 nodes"),
+    ],
+)
+def test_coordinates_left_out_are_warned_of(places, why):
+    graph = nx.path_graph(2)
+    for node, data in enumerate(places):
+        graph.nodes[node].update(data)
+    with pytest.warns(UserWarning, match=f"the coordinates are left out: {why}") as told:
+        assert graphdrl.World.from_networkx(graph).places is None
+    assert told[0].filename == __file__
+    for node in graph:
+        graph.nodes[node].update(lon=node, lat=1)
+    assert graphdrl.World.from_networkx(graph).places.tolist() == [[0, 1], [1, 1]]
+
+
+def test_grids_of_numbers():
+    numbers = np.array([[0, 1, 0], [0, 0, 0]])
+    for dtype in (bool, np.uint8, int, np.float32, float):
+        assert graphdrl.World.from_grid(numbers.astype(dtype)).blocked.tolist() == (numbers == 1).tolist()
+    assert graphdrl.World.from_grid(np.zeros((60, 80))).valid_count == 4800
+
+
+def test_ends_of_evaluations_are_those_of_plans():
+    for end in (None, "start", "anywhere", "a", ("c", 1)):
+        (row,) = graphdrl.evaluate(LABELLED, "exact", 3, end=end, all_starts=True)
+        walks = [graphdrl.plan(LABELLED, 3, start, end, policy="exact").coverage for start in LABELLED.nodes]
+        assert row["mean"] == pytest.approx(100 * np.mean(walks))
+    both = graphdrl.evaluate([LABELLED, LABELLED], "exact", 3, end=("c", 1), all_starts=True)
+    assert both[0]["mean"] == both[1]["mean"]
+    grids = [graphdrl.World.from_grid("...\n..."), graphdrl.World.from_grid("....\n....")]
+    assert graphdrl.evaluate(grids, "exact", 9, end=(1, 1)) == graphdrl.evaluate(grids, "exact", 9, end="1,1")
+    by_label = graphdrl.evaluate([LABELLED, TURNED], "exact", 3, end="a", all_starts=True)
+    assert by_label[0]["mean"] == by_label[1]["mean"]
 ODD = st.one_of(
     st.none(),
     st.booleans(),
@@ -398,6 +458,23 @@ def test_bad_input_is_an_exception_and_never_a_crash(which, odd):
         (lambda: GOOD.names(5), "bad numbers"),
         (lambda: GOOD.state(5, 3), "bad walk"),
         (lambda: graphdrl.plan(GOOD, 2).save(5), "bad path"),
+        (lambda: graphdrl.evaluate(GOOD, "nearest", 4, end=5), "no such node: 5"),
+        (lambda: graphdrl.evaluate(GOOD, "nearest", 4, end=[1]), "no such node"),
+        (lambda: graphdrl.evaluate(GOOD, "nearest", 4, end="door"), "end outside the map"),
+        (lambda: graphdrl.evaluate([GOOD, LABELLED], "nearest", 9, end=("c", 1)), "no such node: .'c', 1."),
+        (lambda: graphdrl.evaluate([LABELLED, TURNED], "nearest", 9, end=("c", 1)), "same number in all worlds"),
+        (lambda: from_weighted(cost="wieght"), "bad cost: no edge has this attribute: 'wieght'"),
+        (lambda: from_weighted(prize="prise"), "bad prize: no node has this attribute: 'prise'"),
+        (lambda: from_weighted(cost=5), "bad cost: expected text, got 5"),
+        (lambda: from_weighted(prize={0: 1}), "bad prize: expected text, got {0: 1}"),
+        (lambda: from_weighted(blocked=5), "bad blocked: expected text, got 5"),
+        (lambda: from_weighted(blocked="shut"), "bad shut: expected True or False, got 'false'"),
+        (
+            lambda: graphdrl.World.from_grid([[0, 100]]),
+            r"expected 0 \(free\) or 1 \(blocked\), got 100; for ROS maps see World.from_file",
+        ),
+        (lambda: graphdrl.World.from_grid(np.full((2, 2), 0.5)), "got 0.5"),
+        (lambda: graphdrl.World.from_grid([[0, float("nan")]]), "got nan"),
     ],
 )
 def test_errors_say_what_to_change(call, message):
