@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Error
-from .world import Budget, Node, World, budget_text, shown
+from .checks import LARGEST_INT, flag, listed, shown, whole_number, wrong
+from .world import Budget, Node, World, array_of, budget_text, flat_of
 
 __all__ = [
     "FIRST_VISIT_ID",
@@ -43,12 +44,14 @@ _OBSERVATIONS = ("flat", "graph")
 _RENDER_MODES = ("ansi", "rgb_array", "human")
 _FRAMES_PER_SECOND = 8
 _CELL_PIXELS = 24
+_GRID_SIZE = 5
+_GRAPH_SIZE = 20
 _COLOURS = {"free": (255, 255, 255), "blocked": (60, 60, 70), "visited": (150, 200, 230), "current": (220, 90, 40)}
 
 
 def _require(value: str, choices: tuple[str, ...], what: str) -> None:
     if value not in choices:
-        raise Error(f"bad {what}: expected {' or '.join(choices)}, got {shown(value)}")
+        raise wrong(what, " or ".join(choices), value)
 
 
 class _Setting:
@@ -58,7 +61,8 @@ class _Setting:
         self,
         map: str | World | None,
         family: str | None,
-        size: int,
+        size: int | None,
+        usual_size: int,
         weighted: bool,
         directed: bool,
         budget: Budget,
@@ -69,6 +73,12 @@ class _Setting:
         _require(reward, _REWARDS, "reward")
         if family is not None and map is not None:
             raise Error("bad map: expected a map or a family of random worlds, got both")
+        weighted, directed = flag(weighted, "weighted"), flag(directed, "directed")
+        if family is None:
+            for name, given in (("size", size is not None), ("weighted", weighted), ("directed", directed)):
+                if given:
+                    raise Error(f"bad {name}: a map has its own: expected a family of random worlds with it")
+        size = whole_number(usual_size if size is None else size, "size", 1, LARGEST_INT)
         self.world: World | None = None
         if family is None:
             self.world = _world_of("paper:a" if map is None else map)
@@ -78,15 +88,24 @@ class _Setting:
         self.state = (
             None if self.world is None else self.world._core, (family or "", size, weighted, directed), self.budget,
             -1 if start is None or self.world is None else self.world.number(start), reward == "coverage_gain",
-            return_to_start,
+            flag(return_to_start, "return_to_start"),
         )  # fmt: skip
         if self.world is not None:
             self.nodes = self.world.node_count
         else:
             self.nodes = size * size if family in _core.GRID_FAMILIES else size
+        self.size = size
 
-    def start_of(self, options: dict[str, Any] | None) -> int:
-        if options is None or "start" not in options:
+    def start_of(self, options: dict[str, Any] | None, known: tuple[str, ...]) -> int:
+        """The number of the node that the options of a `reset` name, -1 without one; `known`: all options there are."""
+        if options is None:
+            return -1
+        if not isinstance(options, dict):
+            raise wrong("options", "a dictionary", options)
+        for name in options:
+            if name not in known:
+                raise wrong("options", " or ".join(map(repr, known)), name)
+        if options.get("start") is None:
             return -1
         if self.world is None:
             raise Error("bad start: random worlds have none to choose")
@@ -98,7 +117,7 @@ def _world_of(map: str | World) -> World:
         return map
     if isinstance(map, str):
         return World.from_file(map)
-    raise Error(f"bad map: expected a World or the name of a map, got {shown(map)}")
+    raise wrong("map", "a World or the name of a map", map)
 
 
 class _Kind:
@@ -131,8 +150,8 @@ class _Kind:
 def _grid_kind(
     count: int, restarts: bool, end_at_full_coverage: bool, punish_blocked_by_visits: bool, **options: Any
 ) -> _Kind:
-    setting = _Setting(weighted=False, directed=False, return_to_start=False, **options)
-    family, size = options["family"], options["size"]
+    setting = _Setting(usual_size=_GRID_SIZE, weighted=False, directed=False, return_to_start=False, **options)
+    family, size = options["family"], setting.size
     if setting.world is not None:
         if setting.world.shape is None:
             raise Error(f"{setting.world.name}: directions need a grid map")
@@ -142,24 +161,24 @@ def _grid_kind(
         if family not in _core.GRID_FAMILIES:
             raise Error(f"bad family: expected {', '.join(_core.GRID_FAMILIES)}, got {shown(family)}")
         rows = columns = size
-        budget = _core.budget_in(World.from_grid(np.zeros((max(size, 1), max(size, 1)), bool))._core, setting.budget)
+        budget = _core.budget_in(World.from_grid(np.zeros((size, size), bool))._core, setting.budget)
     episodes = _core.GridEpisodes(
-        setting.state, end_at_full_coverage, punish_blocked_by_visits, count, restarts, setting.nodes
-    )
+        setting.state, flag(end_at_full_coverage, "end_at_full_coverage"),
+        flag(punish_blocked_by_visits, "punish_blocked_by_visits"), count, restarts, setting.nodes,
+    )  # fmt: skip
     most = [max(rows - 1, 1), max(columns - 1, 1), 1, budget + 1, 1, 4, 1]
     box = spaces.Box(np.float32(0), np.tile(np.array(most, np.float32), setting.nodes), dtype=np.float32)
     return _Kind(setting, episodes, box, 4, masks=False)
 
 
 def _graph_kind(count: int, restarts: bool, max_neighbours: int | None, **options: Any) -> _Kind:
-    setting = _Setting(**options)
+    setting = _Setting(usual_size=_GRAPH_SIZE, **options)
     if max_neighbours is None:
         if setting.world is not None:
             max_neighbours = max(_degree_of(setting.world), 1)
         else:
             max_neighbours = 4 if options["family"] in _core.GRID_FAMILIES else max(setting.nodes - 1, 1)
-    if not isinstance(max_neighbours, int) or not 1 <= max_neighbours <= 1_000_000:
-        raise Error(f"bad max_neighbours: expected 1 to 1000000, got {shown(max_neighbours)}")
+    max_neighbours = whole_number(max_neighbours, "max_neighbours", 1, 1_000_000)
     episodes = _core.GraphEpisodes(setting.state, count, restarts, setting.nodes, max_neighbours)
     box = spaces.Box(0, 1, episodes.observations.shape[1:], np.float32)
     kind = _Kind(setting, episodes, box, max_neighbours, masks=True)
@@ -170,9 +189,8 @@ def _graph_kind(count: int, restarts: bool, max_neighbours: int | None, **option
 
 
 def _first_visit_kind(count: int, restarts: bool, max_visits: int, **options: Any) -> _Kind:
-    setting = _Setting(**options)
-    if not isinstance(max_visits, int) or not 1 <= max_visits <= 96:
-        raise Error(f"bad max_visits: expected 1 to 96, got {shown(max_visits)}")
+    setting = _Setting(usual_size=_GRAPH_SIZE, **options)
+    max_visits = whole_number(max_visits, "max_visits", 1, 96)
     episodes = _core.FirstVisitEpisodes(setting.state, count, restarts, max_visits)
     box = spaces.Box(-16, 16, episodes.observations.shape[1:], np.float32)
     kind = _Kind(setting, episodes, box, max_visits, masks=True)
@@ -232,13 +250,14 @@ class _Env(gymnasium.Env[Any, np.int64]):
             The observation, and the infos of `step`.
 
         Raises:
-            Error: a blocked or missing start, a start for random worlds.
+            Error: a blocked or missing start, a start for random worlds, options other than these.
         """
+        start = self._kind.setting.start_of(options, ("start",))
         super().reset(seed=seed)
         if seed is not None or not self._begun:
             self._kind.seed(0, self.np_random)
             self._begun = True
-        self._kind.episodes.reset(np.ones(1, bool), self._kind.setting.start_of(options))
+        self._kind.episodes.reset(np.ones(1, bool), start)
         if self.render_mode == "human":
             self.render()
         return self._observation(), self._info()
@@ -257,7 +276,7 @@ class _Env(gymnasium.Env[Any, np.int64]):
             Error: no such action, an episode that is over or has not begun.
         """
         episodes = self._kind.episodes
-        episodes.step(np.array([action], np.int64))
+        episodes.step(np.array([whole_number(action, "action", 0, LARGEST_INT)], np.int64))
         if self.render_mode == "human":
             self.render()
         over = bool(episodes.terminated[0]), bool(episodes.truncated[0])
@@ -335,7 +354,9 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
         metadata["autoreset_mode"] = gymnasium.vector.AutoresetMode.NEXT_STEP
 
     def __init__(self, kind: _Kind, num_envs: int, copy: bool) -> None:
+        copy = flag(copy, "copy")
         self._kind = kind
+        self._begun = False
         self.num_envs = num_envs
         self.single_observation_space = kind.observation_space
         self.single_action_space = kind.action_space
@@ -362,12 +383,16 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
             Observations [V, F], float32, and the infos of `step`.
 
         Raises:
-            Error: a number of seeds other than V, a blocked or missing start, a start for random worlds.
+            Error: a number of seeds other than V, a blocked or missing start, a start for random worlds, options other
+                than these.
         """
+        start = self._kind.setting.start_of(options, ("start", "reset_mask"))
+        mask = (options or {}).get("reset_mask", self._all)
+        mask = flat_of(mask, bool, "reset_mask", "b", self.num_envs)
         if isinstance(seed, (int, np.integer)):
             seeds: list[int | None] = [int(seed) + i for i in range(self.num_envs)]
         else:
-            seeds = [None] * self.num_envs if seed is None else list(seed)
+            seeds = [None] * self.num_envs if seed is None else listed(seed, "seed", "one, or one for each")
         if len(seeds) != self.num_envs:
             raise Error(f"bad number of seeds: expected {self.num_envs}, got {len(seeds)}")
         for i, one in enumerate(seeds):
@@ -375,8 +400,8 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
                 random, _ = gymnasium.utils.seeding.np_random(one)
                 self._random[i] = random
                 self._kind.seed(i, random)
-        mask = (options or {}).get("reset_mask", self._all)
-        self._kind.episodes.reset(np.ascontiguousarray(mask, bool), self._kind.setting.start_of(options))
+        self._kind.episodes.reset(mask, start)
+        self._begun = True
         return self._observations(), self._infos()
 
     def step(
@@ -392,9 +417,14 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
             of the single environment's.
 
         Raises:
-            Error: a number of actions other than V, no such action.
+            Error: a number of actions other than V, no such action, no `reset` before.
         """
-        self._kind.episodes.step(np.ascontiguousarray(actions, np.int64))
+        chosen = array_of(actions, np.int64, "actions", "iu")
+        if chosen.shape != (self.num_envs,):
+            raise Error(f"bad number of actions: expected the shape ({self.num_envs},), got {chosen.shape}")
+        if not self._begun:
+            raise Error("no episode has begun: reset() first")
+        self._kind.episodes.step(chosen)
         rewards, terminated, truncated = self._outcome
         return self._observations(), rewards.copy(), terminated.copy(), truncated.copy(), self._infos()
 
@@ -404,7 +434,7 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
         Args:
             index: of the environment, from 0 up.
         """
-        return self._kind.world(index)
+        return self._kind.world(whole_number(index, "index", 0, self.num_envs - 1))
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Which actions may be taken. Shape [V, A], bool."""
@@ -419,6 +449,17 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
             infos[name] = values.copy()
             infos[f"_{name}"] = self._all
         return infos
+
+
+def _vector_count(num_envs: int, observation: str, render_mode: str | None) -> int:
+    """How many environments. Refuses what single ones alone can do."""
+    for name, given in (("observation", observation != "flat"), ("render_mode", render_mode is not None)):
+        if given:
+            raise Error(
+                f"bad {name}: make_vec gives flat boxes and no pictures, single environments have them: "
+                "vectorization_mode='sync' takes them"
+            )
+    return whole_number(num_envs, "num_envs", 1, LARGEST_INT)
 
 
 class GridEnv(_Env):
@@ -444,7 +485,7 @@ class GridEnv(_Env):
             `visit_penalty`. Differs from the paper: its author's code does so.
         start: a cell; by default a random free one.
         family: of random worlds instead of `map`, a new one with every `reset`: a family of grids.
-        size: of random worlds: cells a side.
+        size: of random worlds: cells a side, by default 5.
         render_mode: `ansi`, `rgb_array` or `human`.
 
     Raises:
@@ -460,7 +501,7 @@ class GridEnv(_Env):
         punish_blocked_by_visits: bool = False,
         start: Node | None = None,
         family: str | None = None,
-        size: int = 5,
+        size: int | None = None,
         render_mode: str | None = None,
     ) -> None:
         kind = _grid_kind(
@@ -478,6 +519,7 @@ class GridVectorEnv(_VectorEnv):
     Args:
         num_envs: V, how many.
         copy: if false, observations are one array that every step writes anew. All else is always a copy.
+        render_mode: None; pictures are of single environments.
 
     Raises:
         Error: as GridEnv does.
@@ -493,9 +535,11 @@ class GridVectorEnv(_VectorEnv):
         punish_blocked_by_visits: bool = False,
         start: Node | None = None,
         family: str | None = None,
-        size: int = 5,
+        size: int | None = None,
         copy: bool = True,
+        render_mode: str | None = None,
     ) -> None:
+        num_envs = _vector_count(num_envs, "flat", render_mode)
         kind = _grid_kind(
             num_envs, True, end_at_full_coverage, punish_blocked_by_visits, map=map, family=family, size=size,
             budget=budget, reward=reward, start=start,
@@ -532,7 +576,7 @@ class GraphEnv(_Env):
         start: a node; by default a random free one.
         return_to_start: the walk must end where it began. Moves that make that too dear are masked.
         family: of random worlds instead of `map`, a new one with every `reset`.
-        size: of random worlds: nodes of a graph, cells a side of a grid.
+        size: of random worlds: nodes of a graph, cells a side of a grid; by default 20.
         weighted: of random graphs: edges cost differently.
         directed: of random graphs: three edges in ten lead one way only.
         max_neighbours: A; by default what the map needs, of random grids 4, of random graphs `size` - 1.
@@ -551,7 +595,7 @@ class GraphEnv(_Env):
         start: Node | None = None,
         return_to_start: bool = False,
         family: str | None = None,
-        size: int = 20,
+        size: int | None = None,
         weighted: bool = False,
         directed: bool = False,
         max_neighbours: int | None = None,
@@ -571,6 +615,8 @@ class GraphVectorEnv(_VectorEnv):
     Args:
         num_envs: V, how many.
         copy: as of GridVectorEnv.
+        observation: `flat`; graphs are of single environments.
+        render_mode: None; pictures are of single environments.
 
     Raises:
         Error: as GraphEnv does.
@@ -585,12 +631,15 @@ class GraphVectorEnv(_VectorEnv):
         start: Node | None = None,
         return_to_start: bool = False,
         family: str | None = None,
-        size: int = 20,
+        size: int | None = None,
         weighted: bool = False,
         directed: bool = False,
         max_neighbours: int | None = None,
         copy: bool = True,
+        observation: str = "flat",
+        render_mode: str | None = None,
     ) -> None:
+        num_envs = _vector_count(num_envs, observation, render_mode)
         kind = _graph_kind(
             num_envs, True, max_neighbours, map=map, family=family, size=size, weighted=weighted, directed=directed,
             budget=budget, reward=reward, start=start, return_to_start=return_to_start,
@@ -640,7 +689,7 @@ class FirstVisitEnv(_Env):
         start: Node | None = None,
         return_to_start: bool = False,
         family: str | None = None,
-        size: int = 20,
+        size: int | None = None,
         weighted: bool = False,
         directed: bool = False,
         max_visits: int = 16,
@@ -660,6 +709,8 @@ class FirstVisitVectorEnv(_VectorEnv):
     Args:
         num_envs: V, how many.
         copy: as of GridVectorEnv.
+        observation: `flat`; graphs are of single environments.
+        render_mode: None; pictures are of single environments.
 
     Raises:
         Error: as FirstVisitEnv does.
@@ -674,12 +725,15 @@ class FirstVisitVectorEnv(_VectorEnv):
         start: Node | None = None,
         return_to_start: bool = False,
         family: str | None = None,
-        size: int = 20,
+        size: int | None = None,
         weighted: bool = False,
         directed: bool = False,
         max_visits: int = 16,
         copy: bool = True,
+        observation: str = "flat",
+        render_mode: str | None = None,
     ) -> None:
+        num_envs = _vector_count(num_envs, observation, render_mode)
         kind = _first_visit_kind(
             num_envs, True, max_visits, map=map, family=family, size=size, weighted=weighted, directed=directed,
             budget=budget, reward=reward, start=start, return_to_start=return_to_start,

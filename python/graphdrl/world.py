@@ -44,7 +44,7 @@ def budget_text(budget: Budget) -> str:
         raise wrong("budget", "a number from 0 up, or text like '1.1x'", budget) from error
 
 
-def _array(values: ArrayLike, dtype: type | None, name: str, kinds: str) -> NDArray[Any]:
+def array_of(values: ArrayLike, dtype: type | None, name: str, kinds: str) -> NDArray[Any]:
     """The values as a contiguous array; `dtype`: None for their own; `kinds`: those that it may have had."""
     try:
         array = np.asarray(values)
@@ -58,7 +58,7 @@ def _array(values: ArrayLike, dtype: type | None, name: str, kinds: str) -> NDAr
 
 def _cells(values: ArrayLike) -> NDArray[np.bool_]:
     """What is blocked on a grid."""
-    array = _array(values, None, "grid", "biuf")
+    array = array_of(values, None, "grid", "biuf")
     if array.dtype.kind != "b":
         strange = array[(array != 0) & (array != 1)]
         if strange.size:
@@ -67,10 +67,11 @@ def _cells(values: ArrayLike) -> NDArray[np.bool_]:
     return np.ascontiguousarray(array, bool)
 
 
-def _flat(values: ArrayLike | None, dtype: type, name: str, kinds: str, count: int) -> NDArray[Any]:
+def flat_of(values: ArrayLike | None, dtype: type, name: str, kinds: str, count: int) -> NDArray[Any]:
+    """The same, with one value of each of so many; none without values."""
     if values is None:
         return np.empty(0, dtype)
-    array = _array(values, dtype, name, kinds)
+    array = array_of(values, dtype, name, kinds)
     if array.shape != (count,):
         raise Error(f"bad shape of {name}: expected ({count},), got {array.shape}")
     return array
@@ -184,7 +185,7 @@ class World:
         Raises:
             Error: an array of another shape or type, a node out of range, a cost or prize below 0.
         """
-        ends = _array(edges, np.int64, "edges", "iu")
+        ends = array_of(edges, np.int64, "edges", "iu")
         if ends.size == 0:
             ends = np.empty((0, 2), np.int64)
         if ends.ndim != 2 or ends.shape[1] != 2:
@@ -197,18 +198,18 @@ class World:
             node_count = len(labels) if labels is not None else int(ends.max(initial=-1)) + 1
         points = np.empty((0, 2))
         if places is not None:
-            points = _array(places, np.float64, "places", "fiu")
+            points = array_of(places, np.float64, "places", "fiu")
             if points.shape != (node_count, 2):
                 raise Error(f"bad shape of places: expected ({node_count}, 2), got {points.shape}")
         core = _core.World.graph(
             text(name, "name"),
             node_count,
             ends,
-            _flat(costs, np.float64, "costs", "fiu", len(ends)),
+            flat_of(costs, np.float64, "costs", "fiu", len(ends)),
             flag(directed, "directed"),
-            _flat(blocked, bool, "blocked", "biu", node_count),
+            flat_of(blocked, bool, "blocked", "biu", node_count),
             _texts(labels),
-            _flat(prizes, np.float64, "prizes", "fiu", node_count),
+            flat_of(prizes, np.float64, "prizes", "fiu", node_count),
             points,
             text(unit, "unit"),
             (None, _NO_NODE, _NO_NODE),
