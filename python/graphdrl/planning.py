@@ -198,7 +198,8 @@ def plan(
         policy: a name as of `graphdrl plan --policy`, a Policy, or a callable as `evaluate` takes.
         time_limit: seconds for all of it. Without one, the same arguments give the same walk.
         seed: of the search, and of random policies.
-        on_progress: called now and then with the nodes visited so far and the bound.
+        on_progress: called now and then with the nodes visited, by the walk under way or by the best so far, and the
+            bound. Its answer is ignored.
 
     Raises:
         Error: a blocked or missing node, a bad budget or policy, an end out of reach. What `on_progress` and a policy
