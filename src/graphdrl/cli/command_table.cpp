@@ -30,7 +30,8 @@ OptionEntry entry_of(const CLI::Option& option) {
                     .choices = {},
                     .help = option.get_description(),
                     .group = option.get_group(),
-                    .required = option.get_required()};
+                    .required = option.get_required(),
+                    .repeatable = option.get_expected_max() > 1};
   for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
   if (option.get_items_expected_max() > 0) {

@@ -14,6 +14,7 @@ struct OptionEntry {
   std::string help;
   std::string group;
   bool required = false;
+  bool repeatable = false;
 
   bool is_flag() const { return value.empty(); }
   bool is_positional() const { return names.empty(); }

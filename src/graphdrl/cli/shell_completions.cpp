@@ -104,7 +104,8 @@ std::string zsh_completion(const CommandEntry& program) {
         const std::string what =
             option.choices.empty() ? "_files" : fmt::format("({})", fmt::join(option.choices, " "));
         const std::string value = option.is_flag() ? "" : fmt::format(":{}:{}", zsh_text(option.value), what);
-        text += fmt::format(" \\\n    {}", shell_quoted(fmt::format("{}[{}]{}", name, zsh_text(option.help), value)));
+        text += fmt::format(" \\\n    {}", shell_quoted(fmt::format("{}{}[{}]{}", option.repeatable ? "*" : "", name,
+                                                                    zsh_text(option.help), value)));
       }
     }
     if (entry.commands.empty()) {
