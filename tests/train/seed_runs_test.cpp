@@ -42,13 +42,13 @@ INSTANTIATE_TEST_SUITE_P(, SeedRunsThread, ::testing::Values(short_paper(), shor
 
 TEST_P(SeedRunsThread, EndWithTheBytesOfRunsAlone) {
   const TemporaryFolder folder;
-  const Seeds seeds = {1, 2, 7};
+  const Seeds seeds = {1, 7};
   std::vector<Bytes> single;
   for (const std::uint64_t seed : seeds) {
     single.push_back(alone(folder / ("alone" + std::to_string(seed)), GetParam(), seed));
   }
   EXPECT_FALSE(single[0] == single[1]);
-  for (const int count : {1, 2, 4}) {
+  for (const int count : {1, 2}) {
     set_threads(count);
     SeedRuns runs = SeedRuns::start(GetParam(), seeds, folder / ("all" + std::to_string(count)));
     std::int64_t done = 0;
@@ -58,8 +58,8 @@ TEST_P(SeedRunsThread, EndWithTheBytesOfRunsAlone) {
       EXPECT_GE(news.runs_done, seeds_done);
       seeds_done = news.runs_done;
     }));
-    EXPECT_EQ(done, 3 * runs.trainings().units().count);
-    EXPECT_EQ(seeds_done, 3);
+    EXPECT_EQ(done, 2 * runs.trainings().units().count);
+    EXPECT_EQ(seeds_done, 2);
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       EXPECT_TRUE(bytes_of(runs.trainings().runs()[i].directory) == single[i])
           << count << " threads, seed " << seeds[i];
@@ -72,7 +72,7 @@ TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
   const TemporaryFolder folder;
   const Bytes second = alone(folder / "alone", GetParam(), 2);
   set_threads(2);
-  SeedRuns::start(GetParam(), {1, 2, 3}, folder / "all");
+  SeedRuns::start(GetParam(), {1, 2}, folder / "all");
   int sessions = 0;
   const int questions = GetParam().preset == kPaperPreset ? 50 : 3;
   // Stopped after so many questions, on whatever thread.
@@ -81,7 +81,7 @@ TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
     SeedRuns runs = SeedRuns::resume(folder / "all");
     finished = runs.trainings().run([&] { return asked++ > questions; }, kSilent);
   }
-  EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? 4 : 1);
+  EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? 2 : 1);
   EXPECT_TRUE(bytes_of(RunDirectory(folder / "all" / "seed-2")) == second);
 }
 
