@@ -79,6 +79,7 @@ void SideBySide::run_each(const std::function<void(int run, const MakePaperLearn
   const auto group = make_group_(runs_.front().options.device, count);
   std::vector<std::exception_ptr> failures(runs_.size());
   std::vector<std::thread> threads;
+  threads.reserve(runs_.size());
   for (int i = 0; i < count; ++i) {
     threads.emplace_back([&, i] {
       try {
