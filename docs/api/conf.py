@@ -35,5 +35,6 @@ html_theme_options = {
     "page_width": "1100px",
     "show_powered_by": False,
 }
+html_static_path = ["static"]  # custom.css, which the theme looks for
 html_copy_source = False
 html_show_copyright = False
