@@ -60,8 +60,8 @@ std::string to_text(const Tuning& tuning) {
   std::string text;
   for (std::size_t round = 0; round < tuning.scores().size(); ++round) {
     text += fmt::format(
-        "Round {}: {} seeds of {} episodes; percent of unseen maps visited\n\n  mean    std  over the "
-        "paper's, in standard errors\n",
+        "Round {}: {} seeds of {} episodes; percent of unseen maps visited\n\n"
+        "  mean    std  over the paper's (in standard errors, paired by seed)\n",
         round + 1, tuning.options().rounds[round].seeds, tuning.options().episodes);
     for (const SettingScore& score : tuning.scores()[round]) {
       const auto& errors = score.over_paper_errors;
