@@ -15,8 +15,7 @@
 #include "graphdrl/nn/paper_features.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/paper_kernel_learner.h"
-#include "graphdrl/train/torch/paper_composed_network.h"
-#include "graphdrl/train/torch/paper_device_learner.h"
+#include "graphdrl/train/torch/paper_stack.h"
 
 namespace graphdrl {
 namespace {
@@ -94,12 +93,15 @@ void time_learning_step(benchmark::State& state, const LearningCase& work, int t
   Rng rng(3);
   Rng rng_of_operators(3);
   PaperKernelLearner learner({}, rng);
-  PaperDeviceLearner operators(torch::kCPU, {}, rng_of_operators);
+  PaperStack operators(torch::kCPU, 1);
+  const auto operators_learner = operators.learner_of(0)("cpu", {}, rng_of_operators);
+  operators_learner->learn(work.batch, rng_of_operators);
   set_threads(threads);
-  const double loss = learner.learn(work.batch, rng);
+  learner.learn(work.batch, rng);
+  const double loss = learner.take_losses().front();
   for (auto _ : state) learner.learn(work.batch, rng);
   set_threads(1);
-  if (!(std::abs(operators.learn(work.batch, rng_of_operators) - loss) <= 1e-3 * loss)) {
+  if (!(std::abs(operators_learner->take_losses().front() - loss) <= 1e-3 * loss)) {
     state.SkipWithError("wrong loss");
   }
 }
@@ -133,14 +135,12 @@ void BM_QValuesByNodes(benchmark::State& state) {
   network.set_parameters(parameters);
   std::vector<float> q(kActionCount);
   for (auto _ : state) network.q_values(work.batch.graphs, work.batch.x, q);
-  const torch::Tensor values = torch::from_blob(const_cast<float*>(parameters.values().data()),
-                                                {static_cast<std::int64_t>(parameters.values().size())});
-  const torch::Tensor x =
-      torch::from_blob(const_cast<float*>(work.batch.x.data()), {state.range(0), kPaperFeatureCount});
-  const torch::Tensor expected =
-      composed_q_values(edge_index(work.batch.graphs, torch::kCPU), x, named_tensors(values));
+  Rng rng_of_operators(4);  // the same weights
+  PaperStack operators(torch::kCPU, 1);
+  std::vector<float> expected(q.size());
+  operators.learner_of(0)("cpu", {}, rng_of_operators)->q_values(work.batch.graphs, work.batch.x, expected);
   for (int a = 0; a < kActionCount; ++a) {
-    const auto value = expected[0][a].item<float>();
+    const float value = expected[a];
     if (!(std::abs(q[a] - value) <= 1e-3f * (1 + std::abs(value)))) return state.SkipWithError("wrong values");
   }
 }

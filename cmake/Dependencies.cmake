@@ -79,5 +79,13 @@ if(GRAPHDRL_TORCH)
   set(CMAKE_INSTALL_RPATH ${OPENBLAS_DIR})
   add_link_options(LINKER:--disable-new-dtags)
 
+  # A LibTorch with CUDA enables CMake's language CUDA and looks for this machine's GPU. No file here is in that
+  # language, and no GPU is needed to build.
+  set(CMAKE_CUDA_STANDARD 17)
+  set(TORCH_CUDA_ARCH_LIST 9.0)
+  # Here alone: a LibTorch of a Python wheel has headers of other libraries beside its own.
+  set(prefix_path ${CMAKE_PREFIX_PATH})
+  list(PREPEND CMAKE_PREFIX_PATH ${GRAPHDRL_LIBTORCH})
   find_package(Torch REQUIRED)
+  set(CMAKE_PREFIX_PATH ${prefix_path})
 endif()

@@ -541,6 +541,8 @@ def test_graphdrl_trains_alone_and_asks_for_graphdrl_train_where_cuda_does(run, 
     program.chmod(0o755)
     arguments = [*small, "--device", "cuda", "--out", "a b"]
     assert run(tmp_path / "graphdrl", "train", *arguments).stdout == " ".join(arguments) + "\n"
+    tune = ["tune", "--device", "cuda", "--out", "a b"]
+    assert run(tmp_path / "graphdrl", *tune).stdout == " ".join(tune) + "\n"
     config = tmp_path / "run/config.json"
     config.write_text(config.read_text().replace('"cpu"', '"cuda"'))
     assert (

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "graphdrl/train/paper_learner.h"
+
 namespace graphdrl {
 
 void add_bench_command(CLI::App& app);
@@ -16,6 +18,8 @@ void add_plan_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_results_command(CLI::App& app);
 void add_train_command(CLI::App& app);
-void add_tune_command(CLI::App& app);
+// Of graphdrl-train too.
+void add_tune_command(CLI::App& app, const MakePaperLearner& make_learner,
+                      const MakePaperLearnerGroup& make_group = {});
 
 }  // namespace graphdrl

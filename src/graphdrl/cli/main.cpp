@@ -1,5 +1,6 @@
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/cli/train_command.h"
 
 // NOLINTNEXTLINE(bugprone-exception-escape): before the arguments are read only memory can run out
 int main(int argc, char** argv) {
@@ -8,7 +9,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", GRAPHDRL_VERSION);
   app.require_subcommand(1);
   graphdrl::add_train_command(app);
-  graphdrl::add_tune_command(app);
+  graphdrl::add_tune_command(app, graphdrl::learner_or_torch_program({argv + 1, argv + argc}));
   graphdrl::add_evaluate_command(app);
   graphdrl::add_plan_command(app);
   graphdrl::add_check_command(app);

@@ -1,10 +1,19 @@
-// graphdrl-train: `graphdrl train` with LibTorch, for other devices than the CPU. `graphdrl train --device cuda`
-// becomes it.
+// graphdrl-train: `graphdrl train` and `graphdrl tune` with LibTorch, for other devices than the CPU. With
+// `--device cuda` they become it.
+#include <string_view>
+
+#include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/program.h"
 #include "graphdrl/cli/train_command.h"
-#include "graphdrl/train/torch/paper_device_learner.h"
 #include "graphdrl/train/torch/paper_stack.h"
 
+// NOLINTNEXTLINE(bugprone-exception-escape): before the arguments are read only memory can run out
 int main(int argc, char** argv) {
-  return graphdrl::run_train_command({argv + 1, argv + argc}, graphdrl::make_paper_device_learner,
-                                     graphdrl::make_paper_stack);
+  using namespace graphdrl;
+  if (argc < 2 || std::string_view(argv[1]) != "tune") {
+    return run_train_command({argv + 1, argv + argc}, make_paper_device_learner, make_paper_stack);
+  }
+  CLI::App app{"Training of GraphDRL on a GPU", "graphdrl"};
+  add_tune_command(app, make_paper_device_learner, make_paper_stack);
+  return run_program(app, argc, argv);
 }

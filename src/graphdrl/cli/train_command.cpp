@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
+#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <sstream>
@@ -26,6 +31,19 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler writes it
 
 extern "C" void remember_signal(int signal) {
   stop_signal = signal;
+}
+
+constexpr const char* kTorchProgram = "graphdrl-train";
+
+[[noreturn]] void become_torch_program(const std::string& device, const std::vector<std::string>& arguments) {
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / kTorchProgram;
+  std::vector<char*> argv = {const_cast<char*>(kTorchProgram)};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  execv(program.c_str(), argv.data());
+  throw Error({.what = "training on " + device + " needs graphdrl-train beside graphdrl (" + std::strerror(errno) + ")",
+               .expected = "a build with LibTorch (scripts/build --torch), or --device cpu",
+               .where = program.string()});
 }
 
 // Reads --config files: a run's config.json, or CLI11's own format (name = value).
@@ -270,6 +288,13 @@ int run_train_command(const std::vector<std::string>& arguments, const MakePaper
   std::vector<const char*> argv = {"graphdrl train"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   return run_program(program.app(), static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
+}
+
+MakePaperLearner learner_or_torch_program(std::vector<std::string> arguments) {
+  return [arguments = std::move(arguments)](const std::string& device, const PaperLearnerOptions& options, Rng& rng) {
+    if (device != "cpu") become_torch_program(device, arguments);
+    return make_paper_cpu_learner(device, options, rng);
+  };
 }
 
 void catch_training_signals() {

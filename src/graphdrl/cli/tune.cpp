@@ -81,10 +81,18 @@ std::string to_text(const Tuning& tuning) {
   return text;
 }
 
-void tune(TuneCommand command) {
+void tune(TuneCommand command, const MakePaperLearner& make_learner, const MakePaperLearnerGroup& make_group) {
+  // Refuses a device that is not there before anything is written.
+  const auto require_device = [&](const std::string& device) {
+    Rng rng(0);
+    if (device != "cpu") make_learner(device, {}, rng);
+  };
   command.options.rounds = parse_rounds(command.rounds);
+  if (command.resume.empty()) require_device(command.options.device);
   const std::string folder = command.resume.empty() ? command.out : command.resume;
-  Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder) : Tuning::resume(folder);
+  Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder, make_learner, make_group)
+                                         : Tuning::resume(folder, make_learner, make_group);
+  if (!command.resume.empty()) require_device(tuning.options().device);
   catch_training_signals();
   ProgressDisplay display(stderr, "round", 0);
   const bool finished = tuning.run(
@@ -105,7 +113,7 @@ void tune(TuneCommand command) {
 
 }  // namespace
 
-void add_tune_command(CLI::App& app) {
+void add_tune_command(CLI::App& app, const MakePaperLearner& make_learner, const MakePaperLearnerGroup& make_group) {
   CLI::App* const command = app.add_subcommand(
       "tune",
       "Search for better hyper-parameters of the paper's training, by successive halving over settings and seeds");
@@ -131,6 +139,11 @@ void add_tune_command(CLI::App& app) {
           ->check(CLI::Range(1, 10'000))
           ->capture_default_str();
   CLI::Option* const seed = add_seed_option(*command, options->options.seed, "Of the settings and the trainings");
+  CLI::Option* const device = command
+                                  ->add_option("--device", options->options.device,
+                                               "cpu or cuda, as of train; cuda trains the seeds of a setting together")
+                                  ->check(CLI::IsMember({"cpu", "cuda"}))
+                                  ->capture_default_str();
   CLI::Option* const out = command->add_option("--out", options->out, "The folder of the search, new")
                                ->check(not_empty())
                                ->type_name("FOLDER")
@@ -143,10 +156,11 @@ void add_tune_command(CLI::App& app) {
       ->excludes(train_maps)
       ->excludes(validation_maps)
       ->excludes(seed)
+      ->excludes(device)
       ->excludes(out);
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
-  command->callback([options] { tune(*options); });
+  command->callback([=] { tune(*options, make_learner, make_group); });
 }
 
 }  // namespace graphdrl

@@ -18,6 +18,7 @@ using Json = nlohmann::ordered_json;
 using O = TrainOptions;
 
 constexpr std::int64_t kMany = 1'000'000'000;
+constexpr const char* kAddedLater = "precision";  // runs of version 0.1.0 do not name it
 
 template <typename T>
 void check_range(const std::string& flag, T value, T low, T high) {
@@ -121,6 +122,8 @@ std::vector<AnyOptionField> paper_fields() {
       field("dropout", &O::dropout, {.paper = 0.5}, from_to(0.0, 0.99), "Probability to drop a hidden value"),
       field("device", &O::device, {.paper = "cpu"}, one_of({"cpu", "cuda"}),
             "cpu or cuda; cuda needs graphdrl-train and a LibTorch that has it"),
+      field(kAddedLater, &O::precision, {.paper = "float32"}, one_of({"float32", "tf32"}),
+            "Of cuda's matrix products: float32, or tf32, with factors of 10 bits instead of 23"),
   };
 }
 
@@ -180,6 +183,9 @@ void validate(const TrainOptions& options) {
   if (options.punish_blocked_by_visits && options.reward != "visit_penalty") {
     throw Error({.what = "only the reward visit_penalty punishes anything", .where = "--punish-blocked-by-visits"});
   }
+  if (options.precision != "float32" && options.device == "cpu") {
+    throw Error({.what = "the cpu multiplies in float32 alone", .got = options.precision, .where = "--precision"});
+  }
   if (options.maps.empty()) throw Error({.what = "no maps to train on", .where = "--maps"});
 }
 
@@ -234,7 +240,7 @@ TrainOptions read_config(const std::filesystem::path& path) {
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   TrainOptions options = parse_options(json, source);
   for_each_option([&](const auto& option) {
-    if (!option.defaults.of(options.preset) || json.contains(option.key)) return;
+    if (!option.defaults.of(options.preset) || json.contains(option.key) || option.key == kAddedLater) return;
     throw Error({.what = "missing key " + in_quotes(option.key), .where = source});
   });
   return options;

@@ -48,6 +48,7 @@ struct TrainOptions {
   double soft_update = 0;
   double dropout = 0;
   std::string device;
+  std::string precision;
 };
 
 // What an option is when nobody gives it. A preset without a default does not take the option.

@@ -40,16 +40,15 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
   return loss;
 }
 
-double PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
-  const double loss =
-      compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng));
+void PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
+  losses_.push_back(
+      compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng)));
   const std::size_t trainable = PaperParameters::trainable_count();
   const std::span<float> values = online_.parameters().values();
   adam_.step(online_.gradients().values().first(trainable), values.first(trainable));
   soft_update(values, options_.soft_update, target_.parameters().values());
   online_.update();
   target_.update();
-  return loss;
 }
 
 PaperState PaperKernelLearner::state() const {

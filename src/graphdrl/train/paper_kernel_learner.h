@@ -1,6 +1,7 @@
 // The learner on the kernels of nn/, on the CPU.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "graphdrl/train/adam.h"
@@ -15,7 +16,8 @@ class PaperKernelLearner final : public PaperLearner {
   // Initialises the online network from rng and copies it to the target.
   PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng);
 
-  double learn(const PaperMinibatch& batch, Rng& rng) override;
+  void learn(const PaperMinibatch& batch, Rng& rng) override;
+  std::vector<double> take_losses() override { return std::exchange(losses_, {}); }
   void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) override {
     online_.q_values(batch, x, q);
   }
@@ -34,6 +36,7 @@ class PaperKernelLearner final : public PaperLearner {
   PaperQNetwork online_;
   PaperQNetwork target_;
   Adam adam_;
+  std::vector<double> losses_;      // not taken yet
   std::vector<float> next_q_;       // [B, A]
   std::vector<float> next_online_;  // [B, A]
   std::vector<float> q_;            // [B, A]

@@ -1,12 +1,13 @@
 // One learning step of DQN: targets, loss, Adam, soft update [paper, section 2 and Algorithm 1, lines 9 to 11], as the
-// recipe sees it. PaperKernelLearner does it with the kernels of nn/ on the CPU, PaperDeviceLearner (train/torch/) with
-// LibTorch's operators on any device it has.
+// recipe sees it. PaperKernelLearner does it with the kernels of nn/ on the CPU, PaperStack (train/torch/) with
+// LibTorch's operators on any device that it has, for many trainings at once.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/nn/paper_network.h"
@@ -21,6 +22,7 @@ struct PaperLearnerOptions {
   double learning_rate = 1e-3;  // Adam's
   double soft_update = 1e-3;    // beta
   double dropout = 0.5;
+  bool tf32 = false;  // products on CUDA with factors of 10 bits
 };
 
 // The same whatever device the learner runs on.
@@ -30,8 +32,11 @@ class PaperLearner {
  public:
   virtual ~PaperLearner() = default;
 
-  // One step; gives the loss before it. `rng` draws the dropout.
-  virtual double learn(const PaperMinibatch& batch, Rng& rng) = 0;
+  // One step. `rng` draws the dropout.
+  virtual void learn(const PaperMinibatch& batch, Rng& rng) = 0;
+
+  // The losses before each step since the last call, in order. A device may still be at work on them: it is waited for.
+  virtual std::vector<double> take_losses() = 0;
 
   // The online network in eval mode. x: [N, F], q: [B, A].
   virtual void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) = 0;

@@ -31,7 +31,8 @@ PaperLearnerOptions learner_options(const TrainOptions& options) {
           .discount = options.discount,
           .learning_rate = options.learning_rate,
           .soft_update = options.soft_update,
-          .dropout = options.dropout};
+          .dropout = options.dropout,
+          .tf32 = options.precision == "tf32"};
 }
 
 // The worlds themselves. Throws Error where one does not fit the options.
@@ -73,14 +74,19 @@ bool PaperRecipe::run_unit(TrainingProgress& progress, const std::function<bool(
   if (!in_episode_) begin_episode();  // construct the initial state s_0
   Episode& episode = episodes_[world_];
   while (!episode.done()) {  // for step t = 1 … T
-    if (stop()) return false;
+    if (stop()) {
+      take_losses(progress.samples);
+      return false;
+    }
     const int action = choose_action(progress.done);  //   select a_t following an epsilon-strategy
     const NodeId from = episode.position();
     visits_before_ = episode.visits();
     const StepResult step = episode.step(action);  //   receive r_t and move to s_{t+1}
     remember(action, step, from);                  //   store (s_t, a_t, r_t, s_{t+1}) in M
-    learn(++progress.samples);                     //   sample B, update θ, soft update θ'
+    learn();                                       //   sample B, update θ, soft update θ'
+    ++progress.samples;
   }
+  take_losses(progress.samples);
   end_episode();
   return true;
 }
@@ -130,15 +136,23 @@ void PaperRecipe::remember(int action, const StepResult& step, NodeId from) {
   episode_reward_ += step.reward;
 }
 
-void PaperRecipe::learn(std::int64_t step) {
+void PaperRecipe::learn() {
   if (replay_.size() <= static_cast<std::size_t>(options_.batch_size)) return;
   sample_minibatch(replay_, encoders_, options_.batch_size, rng_, minibatch_);
-  const double loss = learner_->learn(minibatch_, rng_);
-  if (!std::isfinite(loss)) {
-    throw std::runtime_error(fmt::format("the loss is not finite at step {}: try a smaller --learning-rate", step));
+  learner_->learn(minibatch_, rng_);
+}
+
+// Of the steps up to the last one.
+void PaperRecipe::take_losses(std::int64_t last_step) {
+  const std::vector<double> losses = learner_->take_losses();
+  for (std::size_t i = 0; i < losses.size(); ++i) {
+    if (!std::isfinite(losses[i])) {
+      throw std::runtime_error(fmt::format("the loss is not finite at step {}: try a smaller --learning-rate",
+                                           last_step - std::ssize(losses) + 1 + static_cast<std::int64_t>(i)));
+    }
+    window_.loss += losses[i];
+    ++window_.losses;
   }
-  window_.loss += loss;
-  ++window_.losses;
 }
 
 void PaperRecipe::end_episode() {

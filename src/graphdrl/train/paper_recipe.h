@@ -52,7 +52,8 @@ class PaperRecipe final : public Recipe {
   void begin_episode_at(int world, NodeId start);
   int choose_action(std::int64_t episode);
   void remember(int action, const StepResult& step, NodeId from);
-  void learn(std::int64_t step);
+  void learn();
+  void take_losses(std::int64_t last_step);
   void end_episode();
   void restore_episode(const Checkpoint& checkpoint);
 

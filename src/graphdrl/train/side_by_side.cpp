@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -21,6 +22,20 @@ void require_same_options(const PlannedRun& run) {
   found.maps = run.options.maps;
   if (config_json(found) == config_json(run.options)) return;
   throw Error({.what = "the folder holds a run of other options", .where = run.directory.path().string()});
+}
+
+// The runs that differ in their seeds alone, in the order of the first of each kind.
+std::vector<std::vector<int>> runs_alike(const std::vector<PlannedRun>& runs) {
+  std::vector<std::vector<int>> kinds;
+  std::map<std::string, std::size_t> known;
+  for (int run = 0; run < std::ssize(runs); ++run) {
+    TrainOptions options = runs[run].options;
+    options.seed = 0;
+    const auto [kind, is_new] = known.try_emplace(config_json(options).dump(), kinds.size());
+    if (is_new) kinds.emplace_back();
+    kinds[kind->second].push_back(run);
+  }
+  return kinds;
 }
 
 }  // namespace
@@ -48,7 +63,7 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
   const auto trained = [&](const TrainingProgress& progress) { return progress.done == units_.count; };
   const std::int64_t samples_before = sum(&TrainingProgress::samples);
   std::mutex mutex;
-  run_each([&](int i, const MakePaperLearner& make_learner) {
+  const Train train = [&](int i, const MakePaperLearner& make_learner) {
     const auto index = static_cast<std::size_t>(i);
     if (trained(progress_[index]) || stop()) return;
     const RunDirectory& directory = runs_[index].directory;
@@ -68,22 +83,26 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
     } catch (const std::exception& error) {
       throw std::runtime_error(fmt::format("{}: {}", directory.path().string(), error.what()));
     }
-  });
+  };
+  if (make_group_) {
+    for (const std::vector<int>& alike : runs_alike(runs_)) run_together(alike, train);
+  } else {
+    parallel_for(static_cast<int>(runs_.size()), [&](int i) { train(i, make_learner_); });
+  }
   return std::all_of(progress_.begin(), progress_.end(), trained);
 }
 
-// One run a thread of the pool; on another device, all at once.
-void SideBySide::run_each(const std::function<void(int run, const MakePaperLearner&)>& train) {
-  const int count = static_cast<int>(runs_.size());
-  if (!make_group_) return parallel_for(count, [&](int i) { train(i, make_learner_); });
+// Each on a thread of its own, their learners as one.
+void SideBySide::run_together(const std::vector<int>& runs, const Train& train) const {
+  const int count = static_cast<int>(runs.size());
   const auto group = make_group_(runs_.front().options.device, count);
-  std::vector<std::exception_ptr> failures(runs_.size());
+  std::vector<std::exception_ptr> failures(runs.size());
   std::vector<std::thread> threads;
-  threads.reserve(runs_.size());
+  threads.reserve(runs.size());
   for (int i = 0; i < count; ++i) {
     threads.emplace_back([&, i] {
       try {
-        train(i, group->learner_of(i));
+        train(runs[i], group->learner_of(i));
       } catch (...) {
         failures[static_cast<std::size_t>(i)] = std::current_exception();
       }

@@ -27,7 +27,8 @@ class SideBySide {
  public:
   // Begins the runs that are not there yet, and reads where the others stand. Throws Error, as Trainer does, and where
   // a directory holds a run of other options. REQUIRES: at least one run; all of one preset, length and device.
-  // make_group: for another device than the CPU; then all runs have the same options but for their seeds.
+  // make_group: for another device than the CPU. There runs that differ in their seeds alone are trained together, and
+  // the others after them.
   SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {});
 
   // On threads() threads, until all are trained or `stop` says so; then all are saved. Memory: that of as many
@@ -40,7 +41,8 @@ class SideBySide {
   const Recipe::Units& units() const { return units_; }                        // of one run
 
  private:
-  void run_each(const std::function<void(int run, const MakePaperLearner&)>& train);
+  using Train = std::function<void(int run, const MakePaperLearner&)>;
+  void run_together(const std::vector<int>& runs, const Train& train) const;
   std::int64_t sum(std::int64_t TrainingProgress::*member) const;
 
   std::vector<PlannedRun> runs_;

@@ -82,7 +82,7 @@ void write_maps(const std::filesystem::path& folder, Split split, int count, std
 }
 
 TrainOptions options_of(const TuneOptions& options, const Setting& setting, const std::filesystem::path& train_maps) {
-  Json json = {{"preset", kPaperPreset}, {"episodes", options.episodes}};
+  Json json = {{"preset", kPaperPreset}, {"episodes", options.episodes}, {"device", options.device}};
   json.update(setting);
   if (setting.contains("maps")) json["maps"] = {train_maps.string()};
   return parse_options(json, "tune");
@@ -95,7 +95,8 @@ Json to_json(const TuneOptions& options) {
           {"episodes", options.episodes},
           {"train_maps", options.train_maps},
           {"validation_maps", options.validation_maps},
-          {"seed", options.seed}};
+          {"seed", options.seed},
+          {"device", options.device}};
 }
 
 }  // namespace
@@ -130,13 +131,15 @@ std::vector<TuneRound> parse_rounds(const std::string& text) {
 }
 
 Tuning::Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder,
-               MakePaperLearner make_learner)
+               MakePaperLearner make_learner, MakePaperLearnerGroup make_group)
     : options_(std::move(options)),
       settings_(std::move(settings)),
       folder_(std::move(folder)),
-      make_learner_(std::move(make_learner)) {}
+      make_learner_(std::move(make_learner)),
+      make_group_(options_.device == "cpu" ? MakePaperLearnerGroup() : std::move(make_group)) {}
 
-Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, MakePaperLearner make_learner) {
+Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, MakePaperLearner make_learner,
+                     MakePaperLearnerGroup make_group) {
   if (std::filesystem::exists(tune_file(folder)) || std::filesystem::exists(folder / "maps")) {
     throw Error({.what = "the folder holds a search already",
                  .expected = "a new folder, or --resume to go on with it",
@@ -148,13 +151,13 @@ Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, M
   for (const World& world : load_worlds({"paper"})) taken.insert(world.map()->blocked);
   write_maps(folder / "maps" / "validation", Split::kValidation, options.validation_maps, taken);
   write_maps(folder / "maps" / "train", Split::kTrain, options.train_maps, taken);
-  Tuning tuning(options, std::move(settings), std::move(folder), std::move(make_learner));
+  Tuning tuning(options, std::move(settings), std::move(folder), std::move(make_learner), std::move(make_group));
   const Json json = {{"options", to_json(options)}, {"settings", tuning.settings_}};
   write_file(tune_file(tuning.folder_), json.dump(2) + '\n');
   return tuning;
 }
 
-Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learner) {
+Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learner, MakePaperLearnerGroup make_group) {
   const std::string source = tune_file(folder).string();
   const std::string text = read_file(source);
   require_shallow_json(text, source);
@@ -165,7 +168,8 @@ Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learne
                         .episodes = given.at("episodes"),
                         .train_maps = given.at("train_maps"),
                         .validation_maps = given.at("validation_maps"),
-                        .seed = given.at("seed")};
+                        .seed = given.at("seed"),
+                        .device = given.value("device", "cpu")};
     std::string rounds;
     for (const Json& round : given.at("rounds")) {
       rounds += fmt::format("{}{}x{}", rounds.empty() ? "" : ",", round.at(0).get<int>(), round.at(1).get<int>());
@@ -176,7 +180,7 @@ Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learne
       throw Error({.what = "the first setting is not the paper's", .where = source});
     }
     for (const Setting& setting : settings) options_of(options, setting, folder / "maps" / "train");
-    return {std::move(options), std::move(settings), std::move(folder), std::move(make_learner)};
+    return {std::move(options), std::move(settings), std::move(folder), std::move(make_learner), std::move(make_group)};
   } catch (const Json::exception& error) {
     throw Error(
         {.what = fmt::format("not a search for hyper-parameters ({})", escaped(error.what())), .where = source});
@@ -214,7 +218,7 @@ std::vector<PlannedRun> Tuning::runs_of(std::size_t round) const {
 bool Tuning::run(const std::function<bool()>& stop,
                  const std::function<void(std::size_t round, const SideBySideNews&)>& tell) {
   for (std::size_t round = scores_.size(); round < options_.rounds.size(); ++round) {
-    SideBySide trainings(runs_of(round), make_learner_);
+    SideBySide trainings(runs_of(round), make_learner_, make_group_);
     if (!trainings.run(stop, [&](const SideBySideNews& news) { tell(round, news); })) return false;
     scores_.push_back(score(round));
   }

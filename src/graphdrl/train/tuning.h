@@ -30,6 +30,7 @@ struct TuneOptions {
   int train_maps = 64;       // of those settings that train on many
   int validation_maps = 30;  // none of them one of the paper's or one to train on
   std::uint64_t seed = 1;    // of the settings drawn and of the trainings
+  std::string device = "cpu";
 };
 
 // What a setting changes of the preset, by the options' keys. The first one changes nothing: it is the paper's, and
@@ -58,8 +59,9 @@ class Tuning {
   // Draws the settings and the maps, and writes FOLDER/tune.json and FOLDER/maps/. Throws Error where the folder holds
   // a search already.
   static Tuning start(const TuneOptions& options, std::filesystem::path folder,
-                      MakePaperLearner make_learner = make_paper_cpu_learner);
-  static Tuning resume(std::filesystem::path folder, MakePaperLearner make_learner = make_paper_cpu_learner);
+                      MakePaperLearner make_learner = make_paper_cpu_learner, MakePaperLearnerGroup make_group = {});
+  static Tuning resume(std::filesystem::path folder, MakePaperLearner make_learner = make_paper_cpu_learner,
+                       MakePaperLearnerGroup make_group = {});
 
   // All rounds, or until `stop` says so; gives whether it is finished. The runs lie in
   // FOLDER/round-R/setting-I/seed-S.
@@ -73,7 +75,7 @@ class Tuning {
 
  private:
   Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder,
-         MakePaperLearner make_learner);
+         MakePaperLearner make_learner, MakePaperLearnerGroup make_group);
 
   std::vector<std::size_t> settings_of(std::size_t round) const;
   std::vector<PlannedRun> runs_of(std::size_t round) const;
@@ -83,6 +85,7 @@ class Tuning {
   std::vector<Setting> settings_;
   std::filesystem::path folder_;
   MakePaperLearner make_learner_;
+  MakePaperLearnerGroup make_group_;  // for another device than the CPU
   std::vector<RoundScores> scores_;
 };
 

@@ -3,13 +3,16 @@
 #include <torch/torch.h>
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "graphdrl/base/error.h"
 #include "graphdrl/nn/paper_features.h"
 #include "graphdrl/train/paper_q_network.h"
 
 namespace graphdrl {
+
+namespace {
+constexpr std::int64_t kLossLogRows = 64;
+}  // namespace
 
 // The learner that one training sees.
 class StackedLearner final : public PaperLearner {
@@ -24,7 +27,13 @@ class StackedLearner final : public PaperLearner {
     stack_.set_state_of(training_, state);
   }
 
-  double learn(const PaperMinibatch& batch, Rng& rng) override {
+  // With a stack of its own.
+  StackedLearner(std::unique_ptr<PaperStack> stack, const PaperLearnerOptions& options, Rng& rng)
+      : StackedLearner(*stack, 0, options, rng) {
+    own_stack_ = std::move(stack);
+  }
+
+  void learn(const PaperMinibatch& batch, Rng& rng) override {
     PaperStack::Seat& seat = stack_.seats_[training_];
     seat.graphs = &batch.graphs;
     seat.x = batch.x;
@@ -32,7 +41,11 @@ class StackedLearner final : public PaperLearner {
     seat.batch = &batch;
     seat.keep_scale = draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, dropout_, rng);
     stack_.ask(training_, PaperStack::Request::kLearn);
-    return seat.loss;
+  }
+
+  std::vector<double> take_losses() override {
+    const std::lock_guard lock(stack_.mutex_);
+    return stack_.take_losses(training_);
   }
 
   void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) override {
@@ -54,13 +67,14 @@ class StackedLearner final : public PaperLearner {
   }
 
  private:
+  std::unique_ptr<PaperStack> own_stack_;
   PaperStack& stack_;
   int training_;
   double dropout_;
 };
 
 PaperStack::PaperStack(torch::Device device, int trainings)
-    : seats_(static_cast<std::size_t>(trainings)), present_(trainings), device_(device) {
+    : seats_(static_cast<std::size_t>(trainings)), present_(trainings), queue_(device), graphs_(device) {
   torch::set_num_threads(1);  // so that sums on the CPU run in one order
 }
 
@@ -75,15 +89,18 @@ void PaperStack::begin(const PaperLearnerOptions& options) {
   begun_ = true;
   options_ = options;
   adam_ = {.learning_rate = options.learning_rate};
-  const auto trainings = static_cast<std::int64_t>(seats_.size());
+  at::globalContext().setAllowTF32CuBLAS(options.tf32);
   const auto all = static_cast<std::int64_t>(PaperParameters().values().size());
   const auto trainable = static_cast<std::int64_t>(PaperParameters::trainable_count());
-  const torch::TensorOptions on_device = torch::TensorOptions().device(device_);
-  values_ = torch::zeros({trainings, all}, on_device);
-  target_values_ = torch::zeros({trainings, all}, on_device);
-  first_ = torch::zeros({trainings, trainable}, on_device);
-  second_ = torch::zeros({trainings, trainable}, on_device);
-  steps_ = torch::zeros({trainings, 1}, on_device.dtype(torch::kFloat64));
+  const DeviceQueue::Scope scope(queue_);
+  const torch::TensorOptions on_device = torch::TensorOptions().device(queue_.device());
+  values_ = torch::zeros({trainings(), all}, on_device);
+  target_values_ = torch::zeros({trainings(), all}, on_device);
+  first_ = torch::zeros({trainings(), trainable}, on_device);
+  second_ = torch::zeros({trainings(), trainable}, on_device);
+  steps_ = torch::zeros({trainings(), 1}, on_device.dtype(torch::kFloat64));
+  loss_log_ = torch::zeros({kLossLogRows, trainings()}, on_device.dtype(torch::kFloat64));
+  loss_log_row_ = torch::zeros({1}, on_device.dtype(torch::kInt64));
   online_ = stacked_tensors(values_, /*learning=*/true);
   target_ = stacked_tensors(target_values_, /*learning=*/false);
 }
@@ -114,6 +131,7 @@ void PaperStack::serve_where_all_wait() {
   }
   if (failure_ || (moving.empty() && learning.empty()) || std::ssize(moving) + std::ssize(learning) < present_) return;
   try {
+    const DeviceQueue::Scope scope(queue_);
     const std::vector<int>& chosen = moving.empty() ? learning : moving;
     if (moving.empty()) {
       learn(chosen);
@@ -127,119 +145,172 @@ void PaperStack::serve_where_all_wait() {
   served_.notify_all();
 }
 
-std::int64_t PaperStack::place_of(int training, const Graph& graph) {
-  std::map<const Graph*, std::int64_t>& places = seats_[training].places;
-  if (const auto found = places.find(&graph); found != places.end()) return found->second;
-  torch::Tensor adjacent = torch::zeros({graph.node_count(), graph.node_count()});
-  for (NodeId node = 0; node < graph.node_count(); ++node) {
-    for (const NodeId next : graph.neighbours(node)) adjacent[node][next] += 1;
-  }
-  const std::int64_t place = std::ssize(known_);
-  places[&graph] = place;
-  known_.push_back(adjacent);
-  largest_ = std::max<std::int64_t>(largest_, graph.node_count());
-  std::vector<torch::Tensor> padded;
-  std::vector<torch::Tensor> counts;
-  for (const torch::Tensor& one : known_) {
-    const std::int64_t padding = largest_ - one.size(0);
-    padded.push_back(torch::constant_pad_nd(one, {0, padding, 0, padding}));
-    counts.push_back(torch::constant_pad_nd(torch::ones({one.size(0), 1}), {0, 0, 0, padding}));
-  }
-  all_adjacent_ = torch::stack(padded).to(device_);
-  all_counts_ = torch::stack(counts).to(device_);
-  return place;
-}
-
-StackedGraphs PaperStack::graphs_of(const std::vector<int>& trainings, std::int64_t batch) {
-  const auto all = static_cast<std::int64_t>(seats_.size());
-  std::vector<std::int64_t> places(static_cast<std::size_t>(all * batch), 0);
-  std::vector<float> there(places.size(), 0);
-  for (const int training : trainings) {
-    const GraphBatch& graphs = *seats_[training].graphs;
-    for (int g = 0; g < graphs.graph_count(); ++g) {
-      const std::size_t i = static_cast<std::size_t>(training * batch + g);
-      places[i] = place_of(training, graphs.graph(g));
-      there[i] = 1;
-    }
-  }
-  const torch::Tensor index = torch::tensor(places).to(device_);
-  const torch::Tensor present = torch::tensor(there).to(device_).view({all, batch, 1, 1});
-  return {.adjacent = all_adjacent_.index_select(0, index),
-          .counts = all_counts_.index_select(0, index).view({all, batch, largest_, 1}) * present};
-}
-
-torch::Tensor PaperStack::stacked(const std::vector<int>& trainings, std::span<const float> Seat::*x,
-                                  std::int64_t batch) const {
-  const auto all = static_cast<std::int64_t>(seats_.size());
-  torch::Tensor out = torch::zeros({all, batch, largest_, kPaperFeatureCount});
-  float* const values = out.data_ptr<float>();
-  for (const int training : trainings) {
-    const GraphBatch& graphs = *seats_[training].graphs;
-    const std::span<const float> rows = seats_[training].*x;
-    for (int g = 0; g < graphs.graph_count(); ++g) {
-      const auto first = static_cast<std::size_t>(graphs.first_node(g)) * kPaperFeatureCount;
-      const auto count = static_cast<std::size_t>(graphs.graph(g).node_count()) * kPaperFeatureCount;
-      std::copy_n(rows.data() + first, count, values + (training * batch + g) * largest_ * kPaperFeatureCount);
-    }
-  }
-  return out.to(device_);
-}
-
 void PaperStack::move(const std::vector<int>& trainings) {
-  const torch::NoGradGuard no_grad;
-  const std::int64_t batch = seats_[trainings.front()].graphs->graph_count();
-  const StackedGraphs graphs = graphs_of(trainings, batch);
-  const torch::Tensor q =
-      stacked_q_values(graphs, stacked(trainings, &Seat::x, batch), online_).to(torch::kCPU).contiguous();
+  Work& work = this->work(Request::kMove, trainings);
+  fill(work.host, trainings);
+  send(work);
+  const torch::Tensor q = work.q.to(torch::kCPU);
+  const std::int64_t size = q.size(1) * q.size(2);
   for (const int training : trainings) {
     const std::span<float> out = seats_[training].q;
-    std::copy_n(q.data_ptr<float>() + training * batch * kActionCount, out.size(), out.begin());
+    std::copy_n(q.data_ptr<float>() + training * size, out.size(), out.begin());
   }
 }
 
+// Does not wait for the device.
 void PaperStack::learn(const std::vector<int>& trainings) {
-  const auto all = static_cast<std::int64_t>(seats_.size());
-  const std::int64_t batch = seats_[trainings.front()].graphs->graph_count();
-  const StackedGraphs graphs = graphs_of(trainings, batch);
-  std::vector<float> is_active(seats_.size(), 0);
-  std::vector<float> keep(static_cast<std::size_t>(all * batch * kHiddenWidth), 0);
-  std::vector<float> rewards(static_cast<std::size_t>(all * batch), 0);
-  std::vector<float> goes_on(rewards.size(), 0);
-  std::vector<std::int64_t> actions(rewards.size(), 0);
+  if (learned_ - fetched_ == kLossLogRows) fetch_losses();
+  Work& work = this->work(Request::kLearn, trainings);
+  work.sent.wait();  // the inputs of the step before
+  fill(work.host, trainings);
+  send(work);
+  for (const int training : trainings) seats_[training].in_loss_log.push_back(learned_ % kLossLogRows);
+  ++learned_;
+}
+
+std::vector<double> PaperStack::take_losses(int training) {
+  if (!seats_[training].in_loss_log.empty()) fetch_losses();
+  return std::exchange(seats_[training].losses, {});
+}
+
+void PaperStack::fetch_losses() {
+  const DeviceQueue::Scope scope(queue_);
+  const torch::Tensor log = loss_log_.to(torch::kCPU);
+  const auto losses = log.accessor<double, 2>();
+  for (int training = 0; training < std::ssize(seats_); ++training) {
+    Seat& seat = seats_[training];
+    for (const std::int64_t row : seat.in_loss_log) seat.losses.push_back(losses[row][training]);
+    seat.in_loss_log.clear();
+  }
+  fetched_ = learned_;
+}
+
+// The tensors that a request of these trainings needs. Graphs not seen before may change all shapes.
+PaperStack::Work& PaperStack::work(Request request, const std::vector<int>& trainings) {
+  const torch::Tensor known = graphs_.adjacent();
   for (const int training : trainings) {
-    const Seat& seat = seats_[training];
-    is_active[training] = 1;
-    std::copy(seat.keep_scale.begin(), seat.keep_scale.end(), keep.begin() + training * batch * kHiddenWidth);
-    for (std::int64_t i = 0; i < batch; ++i) {
-      rewards[training * batch + i] = seat.batch->rewards[i];
-      goes_on[training * batch + i] = seat.batch->terminal[i] != 0 ? 0.0F : 1.0F;
-      actions[training * batch + i] = seat.batch->actions[i];
+    Seat& seat = seats_[training];
+    for (int g = 0; g < seat.graphs->graph_count(); ++g) {
+      const Graph& graph = seat.graphs->graph(g);
+      if (!seat.places.contains(&graph)) seat.places[&graph] = graphs_.add(graph);
     }
   }
-  const auto on_device = [&](const auto& values, std::vector<std::int64_t> shape) {
-    return torch::tensor(values).view(shape).to(device_);
-  };
-  const torch::Tensor active = on_device(is_active, {all});
+  if (!graphs_.adjacent().is_same(known)) {
+    queue_.wait();
+    works_.clear();
+  }
+  const std::int64_t batch = seats_[trainings.front()].graphs->graph_count();
+  const auto [found, is_new] = works_.try_emplace({request, batch});
+  Work& work = found->second;
+  if (!is_new) return work;
+  const torch::TensorOptions on_host = torch::TensorOptions().pinned_memory(!queue_.device().is_cpu());
+  work.host = empty_inputs(request, batch, on_host);
+  work.device = empty_inputs(request, batch, torch::TensorOptions().device(queue_.device()));
+  if (request == Request::kMove) {
+    work.q = torch::zeros({this->trainings(), batch, kActionCount}, queue_.device());
+    work.run = std::make_unique<DeviceQueue::Repeated>([this, &work] { choose_values(work.device, work.q); });
+  } else {
+    work.run = std::make_unique<DeviceQueue::Repeated>([this, &work] { learn_step(work.device); });
+  }
+  return work;
+}
+
+std::vector<torch::Tensor*> PaperStack::Inputs::all() {
+  return {&places, &present, &x, &next_x, &keep_scale, &rewards, &goes_on, &actions, &active};
+}
+
+PaperStack::Inputs PaperStack::empty_inputs(Request request, std::int64_t batch,
+                                            const torch::TensorOptions& where) const {
+  const std::int64_t all = trainings();
+  const std::int64_t nodes = graphs_.largest();
+  Inputs inputs;
+  inputs.places = torch::zeros({all * batch}, where.dtype(torch::kInt64));
+  inputs.present = torch::zeros({all, batch, 1, 1}, where);
+  inputs.x = torch::zeros({all, batch, nodes, kPaperFeatureCount}, where);
+  if (request == Request::kMove) return inputs;
+  inputs.next_x = torch::zeros_like(inputs.x);
+  inputs.keep_scale = torch::zeros({all, batch, kHiddenWidth}, where);
+  inputs.rewards = torch::zeros({all, batch}, where);
+  inputs.goes_on = torch::zeros({all, batch}, where);
+  inputs.actions = torch::zeros({all, batch, 1}, where.dtype(torch::kInt64));
+  inputs.active = torch::zeros({all}, where);
+  return inputs;
+}
+
+void PaperStack::fill(Inputs& host, const std::vector<int>& trainings) {
+  const bool learning = host.active.defined();
+  const std::int64_t batch = host.x.size(1);
+  const std::int64_t row = host.x.size(2) * host.x.size(3);  // of one graph's features
+  for (torch::Tensor* const tensor : host.all()) {
+    if (tensor->defined()) tensor->zero_();
+  }
+  for (const int training : trainings) {
+    const Seat& seat = seats_[training];
+    const std::int64_t first = training * batch;
+    for (int g = 0; g < seat.graphs->graph_count(); ++g) {
+      const Graph& graph = seat.graphs->graph(g);
+      host.places.data_ptr<std::int64_t>()[first + g] = seat.places.at(&graph);
+      host.present.data_ptr<float>()[first + g] = 1;
+      const auto from = static_cast<std::ptrdiff_t>(seat.graphs->first_node(g)) * kPaperFeatureCount;
+      const std::int64_t count = std::int64_t{graph.node_count()} * kPaperFeatureCount;
+      std::copy_n(seat.x.begin() + from, count, host.x.data_ptr<float>() + (first + g) * row);
+      if (learning) std::copy_n(seat.next_x.begin() + from, count, host.next_x.data_ptr<float>() + (first + g) * row);
+    }
+    if (!learning) continue;
+    host.active.data_ptr<float>()[training] = 1;
+    std::copy(seat.keep_scale.begin(), seat.keep_scale.end(), host.keep_scale.data_ptr<float>() + first * kHiddenWidth);
+    for (std::int64_t i = 0; i < batch; ++i) {
+      host.rewards.data_ptr<float>()[first + i] = seat.batch->rewards[i];
+      host.goes_on.data_ptr<float>()[first + i] = seat.batch->terminal[i] != 0 ? 0.0F : 1.0F;
+      host.actions.data_ptr<std::int64_t>()[first + i] = seat.batch->actions[i];
+    }
+  }
+}
+
+// Copies the inputs to the device and has it work on them.
+void PaperStack::send(Work& work) {
+  const std::vector<torch::Tensor*> from = work.host.all();
+  const std::vector<torch::Tensor*> to = work.device.all();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (from[i]->defined()) to[i]->copy_(*from[i], /*non_blocking=*/true);
+  }
+  work.sent.set(queue_);
+  work.run->run(queue_);
+}
+
+StackedGraphs PaperStack::graphs_of(const Inputs& inputs) const {
+  const std::int64_t nodes = graphs_.largest();
+  const torch::Tensor counts = graphs_.counts().index_select(0, inputs.places);
+  return {.adjacent = graphs_.adjacent().index_select(0, inputs.places),
+          .counts = counts.view({trainings(), -1, nodes, 1}) * inputs.present};
+}
+
+void PaperStack::choose_values(const Inputs& inputs, const torch::Tensor& q) {
+  const torch::NoGradGuard no_grad;
+  q.copy_(stacked_q_values(graphs_of(inputs), inputs.x, online_));
+}
+
+void PaperStack::learn_step(const Inputs& inputs) {
+  const StackedGraphs graphs = graphs_of(inputs);
   torch::Tensor targets;
   {
     const torch::NoGradGuard no_grad;
-    const torch::Tensor next_x = stacked(trainings, &Seat::next_x, batch);
-    const torch::Tensor next_q = stacked_q_values(graphs, next_x, target_);
-    const torch::Tensor chooser = options_.double_dqn ? stacked_q_values(graphs, next_x, online_) : next_q;
+    const torch::Tensor next_q = stacked_q_values(graphs, inputs.next_x, target_);
+    const torch::Tensor chooser = options_.double_dqn ? stacked_q_values(graphs, inputs.next_x, online_) : next_q;
     const torch::Tensor value = next_q.gather(2, chooser.argmax(2, /*keepdim=*/true)).squeeze(2);
-    targets = on_device(rewards, {all, batch}) + options_.discount * value * on_device(goes_on, {all, batch});
+    targets = inputs.rewards + options_.discount * value * inputs.goes_on;
   }
-  const torch::Tensor q = stacked_q_values(graphs, stacked(trainings, &Seat::x, batch), online_,
-                                           on_device(keep, {all, batch, kHiddenWidth}), active);
-  const torch::Tensor chosen = q.gather(2, on_device(actions, {all, batch, 1})).squeeze(2);
+  const torch::Tensor q = stacked_q_values(graphs, inputs.x, online_, inputs.keep_scale, inputs.active);
+  const torch::Tensor chosen = q.gather(2, inputs.actions).squeeze(2);
   const torch::Tensor losses = (chosen - targets).square().mean(1);  // L(θ) [paper, eq. 5], [S]
-  step(active, stacked_gradient((losses * active).sum(), online_));
-  const torch::Tensor known = losses.detach().to(torch::kCPU, torch::kFloat64);
-  for (const int training : trainings) seats_[training].loss = known[training].item<double>();
+  adam_step(inputs.active, stacked_gradient((losses * inputs.active).sum(), online_));
+  const torch::NoGradGuard no_grad;
+  loss_log_.index_copy_(0, loss_log_row_, losses.detach().to(torch::kFloat64).unsqueeze(0));
+  loss_log_row_.add_(1).remainder_(kLossLogRows);
 }
 
 // Adam and the soft update, of the trainings that are active [S]. gradient: [S, trainable].
-void PaperStack::step(const torch::Tensor& active, const torch::Tensor& gradient) {
+void PaperStack::adam_step(const torch::Tensor& active, const torch::Tensor& gradient) {
   const torch::NoGradGuard no_grad;
   const torch::Tensor mask = active.view({-1, 1});
   steps_ += mask;
@@ -255,6 +326,7 @@ void PaperStack::step(const torch::Tensor& active, const torch::Tensor& gradient
 }
 
 PaperState PaperStack::state_of(int training) {
+  const DeviceQueue::Scope scope(queue_);
   const auto copy_out = [&](const torch::Tensor& all, std::span<float> values) {
     const torch::Tensor host = all[training].to(torch::kCPU).contiguous();
     std::copy_n(host.data_ptr<float>(), values.size(), values.begin());
@@ -270,6 +342,7 @@ PaperState PaperStack::state_of(int training) {
 
 void PaperStack::set_state_of(int training, const PaperState& state) {
   const torch::NoGradGuard no_grad;
+  const DeviceQueue::Scope scope(queue_);
   const auto copy_in = [&](torch::Tensor& all, std::span<const float> values) {
     all[training].copy_(
         torch::from_blob(const_cast<float*>(values.data()), {static_cast<std::int64_t>(values.size())}));
@@ -281,10 +354,13 @@ void PaperStack::set_state_of(int training, const PaperState& state) {
   steps_[training] = static_cast<double>(state.adam.steps);
 }
 
+std::unique_ptr<PaperLearner> make_paper_device_learner(const std::string& device, const PaperLearnerOptions& options,
+                                                        Rng& rng) {
+  if (device == "cpu") return make_paper_cpu_learner(device, options, rng);
+  return std::make_unique<StackedLearner>(std::make_unique<PaperStack>(torch::Device(device), 1), options, rng);
+}
+
 std::unique_ptr<PaperLearnerGroup> make_paper_stack(const std::string& device, int trainings) {
-  if (device != "cpu" && !torch::cuda::is_available()) {
-    throw Error({.what = "this LibTorch finds no CUDA device", .expected = "cpu", .got = device, .where = "--device"});
-  }
   return std::make_unique<PaperStack>(torch::Device(device), trainings);
 }
 

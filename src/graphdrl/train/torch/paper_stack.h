@@ -10,12 +10,15 @@
 
 #include "graphdrl/train/adam.h"
 #include "graphdrl/train/paper_learner.h"
+#include "graphdrl/train/torch/device_queue.h"
+#include "graphdrl/train/torch/known_graphs.h"
 #include "graphdrl/train/torch/paper_stacked_network.h"
 
 namespace graphdrl {
 
 class PaperStack final : public PaperLearnerGroup {
  public:
+  // Throws Error where LibTorch does not have the device.
   PaperStack(torch::Device device, int trainings);
 
   // As PaperLearner, of one of the trainings. All have the same options and batch size.
@@ -34,10 +37,35 @@ class PaperStack final : public PaperLearnerGroup {
     std::span<const float> x;       // [N, F]
     std::span<const float> next_x;  // [N, F], to learn
     const PaperMinibatch* batch = nullptr;
-    std::vector<float> keep_scale;  // [B, 256]
-    std::span<float> q;             // [B, A], of a move
-    double loss = 0;
-    std::map<const Graph*, std::int64_t> places;  // of its graphs in all_adjacent_, while it is there
+    std::vector<float> keep_scale;                // [B, 256]
+    std::span<float> q;                           // [B, A], of a move
+    std::vector<std::int64_t> in_loss_log;        // rows of losses that are still there alone
+    std::vector<double> losses;                   // not taken yet
+    std::map<const Graph*, std::int64_t> places;  // of its graphs among those known, while it is there
+  };
+
+  // What all seats ask for, on the host and on the device. Zeros for those that ask for nothing.
+  struct Inputs {
+    torch::Tensor places;   // [S * B] int64, among the known graphs
+    torch::Tensor present;  // [S, B, 1, 1]: 1 where a training asks
+    torch::Tensor x;        // [S, B, n, F]
+    // To learn:
+    torch::Tensor next_x;      // [S, B, n, F]
+    torch::Tensor keep_scale;  // [S, B, 256]
+    torch::Tensor rewards;     // [S, B]
+    torch::Tensor goes_on;     // [S, B]: 0 where the next state is terminal, else 1
+    torch::Tensor actions;     // [S, B, 1] int64
+    torch::Tensor active;      // [S]: 1 where a training asks
+
+    std::vector<torch::Tensor*> all();
+  };
+  // A request of one kind and batch size: its tensors are the same every time.
+  struct Work {
+    Inputs host;
+    Inputs device;
+    torch::Tensor q;  // [S, B, A], of a move
+    DeviceQueue::Mark sent;
+    std::unique_ptr<DeviceQueue::Repeated> run;
   };
 
   void begin(const PaperLearnerOptions& options);
@@ -45,11 +73,18 @@ class PaperStack final : public PaperLearnerGroup {
   void serve_where_all_wait();
   void move(const std::vector<int>& trainings);
   void learn(const std::vector<int>& trainings);
-  void step(const torch::Tensor& active, const torch::Tensor& gradient);
-  // Writes [S, B, n, F] of the trainings, zeros elsewhere.
-  torch::Tensor stacked(const std::vector<int>& trainings, std::span<const float> Seat::*x, std::int64_t batch) const;
-  StackedGraphs graphs_of(const std::vector<int>& trainings, std::int64_t batch);
-  std::int64_t place_of(int training, const Graph& graph);
+  std::vector<double> take_losses(int training);
+  void fetch_losses();
+
+  Work& work(Request request, const std::vector<int>& trainings);
+  Inputs empty_inputs(Request request, std::int64_t batch, const torch::TensorOptions& where) const;
+  void fill(Inputs& host, const std::vector<int>& trainings);
+  void send(Work& work);
+  void choose_values(const Inputs& inputs, const torch::Tensor& q);
+  void learn_step(const Inputs& inputs);
+  void adam_step(const torch::Tensor& active, const torch::Tensor& gradient);
+  StackedGraphs graphs_of(const Inputs& inputs) const;
+  std::int64_t trainings() const { return static_cast<std::int64_t>(seats_.size()); }
 
   PaperState state_of(int training);
   void set_state_of(int training, const PaperState& state);
@@ -60,7 +95,7 @@ class PaperStack final : public PaperLearnerGroup {
   int present_;
   std::exception_ptr failure_;
 
-  torch::Device device_;
+  DeviceQueue queue_;
   bool begun_ = false;
   PaperLearnerOptions options_;
   AdamOptions adam_;
@@ -72,12 +107,19 @@ class PaperStack final : public PaperLearnerGroup {
   NamedTensors online_;
   NamedTensors target_;
 
-  // Every graph that was seen.
-  std::vector<torch::Tensor> known_;  // [nodes, nodes] each
-  std::int64_t largest_ = 0;          // n
-  torch::Tensor all_adjacent_;        // [graphs, n, n]
-  torch::Tensor all_counts_;          // [graphs, n, 1]
+  // Losses stay on the device until a training asks for its own.
+  torch::Tensor loss_log_;      // [rows, S] float64, written in turn
+  torch::Tensor loss_log_row_;  // [1] int64, the next
+  std::int64_t learned_ = 0;    // steps
+  std::int64_t fetched_ = 0;    // of them
+
+  KnownGraphs graphs_;
+  std::map<std::pair<Request, std::int64_t>, Work> works_;  // by kind and batch size
 };
+
+// A learner alone on a device, by its name. Throws Error where LibTorch does not have it.
+std::unique_ptr<PaperLearner> make_paper_device_learner(const std::string& device, const PaperLearnerOptions& options,
+                                                        Rng& rng);
 
 // Makes a stack on a device by its name. Throws Error where LibTorch does not have the device.
 std::unique_ptr<PaperLearnerGroup> make_paper_stack(const std::string& device, int trainings);

@@ -1,8 +1,8 @@
 #include "graphdrl/train/torch/paper_stacked_network.h"
 
-#include <fmt/format.h>
 #include <torch/torch.h>
 
+#include <tuple>
 #include <vector>
 
 namespace graphdrl {
@@ -13,12 +13,18 @@ torch::Tensor stacked_linear(const torch::Tensor& x, const torch::Tensor& weight
   return torch::baddbmm(bias.unsqueeze(1), x, weight.transpose(1, 2));
 }
 
-// One GRU cell [Cho et al. 2014], as PyTorch's: x and h [S, R, D].
+// One GRU cell [Cho et al. 2014], as PyTorch's: x and h [S, R, D]. CUDA has a kernel for what follows the products.
 torch::Tensor stacked_gru(const torch::Tensor& x, const torch::Tensor& h, const NamedTensors& tensors,
                           const std::string& name) {
   const auto of = [&](const char* tensor) { return tensors.at(name + tensor); };
-  const std::vector<torch::Tensor> input = stacked_linear(x, of(".weight_ih"), of(".bias_ih")).chunk(3, 2);
-  const std::vector<torch::Tensor> state = stacked_linear(h, of(".weight_hh"), of(".bias_hh")).chunk(3, 2);
+  const torch::Tensor inputs = stacked_linear(x, of(".weight_ih"), of(".bias_ih"));
+  const torch::Tensor states = stacked_linear(h, of(".weight_hh"), of(".bias_hh"));
+  if (h.is_cuda()) {
+    const auto rows = [](const torch::Tensor& all) { return all.reshape({-1, all.size(2)}); };
+    return std::get<0>(at::_thnn_fused_gru_cell(rows(inputs), rows(states), rows(h))).view(h.sizes());
+  }
+  const std::vector<torch::Tensor> input = inputs.chunk(3, 2);
+  const std::vector<torch::Tensor> state = states.chunk(3, 2);
   const torch::Tensor reset = torch::sigmoid(input[0] + state[0]);
   const torch::Tensor update = torch::sigmoid(input[1] + state[1]);
   const torch::Tensor fresh = torch::tanh(input[2] + reset * state[2]);
@@ -90,8 +96,8 @@ torch::Tensor stacked_q_values(const StackedGraphs& graphs, const torch::Tensor&
   const torch::Tensor counts = graphs.counts.reshape({trainings, -1, 1});
   torch::Tensor h = x.reshape({trainings, -1, x.size(3)});
   for (int layer = 1; layer <= 3; ++layer) {
-    h = torch::elu(stacked_conv(graphs, h, tensors, fmt::format("conv{}", layer)));
-    if (layer < 3) h = stacked_batch_norm(h, counts, tensors, fmt::format("bn{}", layer), active);
+    h = torch::elu(stacked_conv(graphs, h, tensors, "conv" + std::to_string(layer)));
+    if (layer < 3) h = stacked_batch_norm(h, counts, tensors, "bn" + std::to_string(layer), active);
   }
   h = (h * counts).view({trainings, batch, -1, h.size(2)}).sum(2);  // sum pooling
   h = torch::elu(stacked_linear(h, tensors.at("fc1.weight"), tensors.at("fc1.bias")));

@@ -7,9 +7,15 @@
 
 #include <torch/types.h>
 
-#include "graphdrl/train/torch/paper_composed_network.h"
+#include <map>
+#include <string>
+
+#include "graphdrl/nn/paper_network.h"
 
 namespace graphdrl {
+
+// The network's tensors by PyTorch's names.
+using NamedTensors = std::map<std::string, torch::Tensor>;
 
 // What the graphs of S batches look like.
 struct StackedGraphs {
