@@ -90,7 +90,8 @@ TEST(TrainOptions, OfABadConfigurationFileAreRefused) {
   EXPECT_THAT(error_with(replaced("\"seed\": 1,", "\"seed\": [[2]],")),
               HasSubstr("seed: value of the wrong type: got '[[2]]'"));
   EXPECT_THAT(error_with(replaced("\"episodes\": 10000", "\"episodes\": 0")), HasSubstr("--episodes"));
-  EXPECT_THAT(error_with(replaced("\"float32\"", "\"tf32\"")), HasSubstr("--precision: the cpu multiplies in float32"));
+  EXPECT_THAT(error_with(replaced("\"float32\"", "\"tf32\"")),
+              HasSubstr("--precision: the cpu multiplies only in float32"));
   EXPECT_EQ(error_with(replaced(",\n  \"precision\": \"float32\"", "")), "") << "runs of version 0.1.0 lack it";
   // Printing a value nested so deeply would take more stack than there is.
   const std::string deep(1'000'000, '[');

@@ -18,7 +18,7 @@ void add_plan_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_results_command(CLI::App& app);
 void add_train_command(CLI::App& app);
-// Of graphdrl-train too.
+// Also a command of graphdrl-train, which passes make_group.
 void add_tune_command(CLI::App& app, const MakePaperLearner& make_learner,
                       const MakePaperLearnerGroup& make_group = {});
 

@@ -82,17 +82,10 @@ std::string to_text(const Tuning& tuning) {
 }
 
 void tune(TuneCommand command, const MakePaperLearner& make_learner, const MakePaperLearnerGroup& make_group) {
-  // Refuses a device that is not there before anything is written.
-  const auto require_device = [&](const std::string& device) {
-    Rng rng(0);
-    if (device != "cpu") make_learner(device, {}, rng);
-  };
   command.options.rounds = parse_rounds(command.rounds);
-  if (command.resume.empty()) require_device(command.options.device);
   const std::string folder = command.resume.empty() ? command.out : command.resume;
   Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder, make_learner, make_group)
                                          : Tuning::resume(folder, make_learner, make_group);
-  if (!command.resume.empty()) require_device(tuning.options().device);
   catch_training_signals();
   ProgressDisplay display(stderr, "round", 0);
   const bool finished = tuning.run(

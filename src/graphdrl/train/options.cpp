@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/budget.h"
@@ -18,7 +19,7 @@ using Json = nlohmann::ordered_json;
 using O = TrainOptions;
 
 constexpr std::int64_t kMany = 1'000'000'000;
-constexpr const char* kAddedLater = "precision";  // runs of version 0.1.0 do not name it
+constexpr std::string_view kAddedLater = "precision";  // runs of version 0.1.0 do not name it
 
 template <typename T>
 void check_range(const std::string& flag, T value, T low, T high) {
@@ -122,7 +123,7 @@ std::vector<AnyOptionField> paper_fields() {
       field("dropout", &O::dropout, {.paper = 0.5}, from_to(0.0, 0.99), "Probability to drop a hidden value"),
       field("device", &O::device, {.paper = "cpu"}, one_of({"cpu", "cuda"}),
             "cpu or cuda; cuda needs graphdrl-train and a LibTorch that has it"),
-      field(kAddedLater, &O::precision, {.paper = "float32"}, one_of({"float32", "tf32"}),
+      field("precision", &O::precision, {.paper = "float32"}, one_of({"float32", "tf32"}),
             "Of cuda's matrix products: float32, or tf32, with factors of 10 bits instead of 23"),
   };
 }
@@ -184,7 +185,7 @@ void validate(const TrainOptions& options) {
     throw Error({.what = "only the reward visit_penalty punishes anything", .where = "--punish-blocked-by-visits"});
   }
   if (options.precision != "float32" && options.device == "cpu") {
-    throw Error({.what = "the cpu multiplies in float32 alone", .got = options.precision, .where = "--precision"});
+    throw Error({.what = "the cpu multiplies only in float32", .got = options.precision, .where = "--precision"});
   }
   if (options.maps.empty()) throw Error({.what = "no maps to train on", .where = "--maps"});
 }

@@ -35,7 +35,7 @@ class PaperLearner {
   // One step. `rng` draws the dropout.
   virtual void learn(const PaperMinibatch& batch, Rng& rng) = 0;
 
-  // The losses before each step since the last call, in order. A device may still be at work on them: it is waited for.
+  // Losses of the steps since the last call, in order, each from before its update. Waits for the device.
   virtual std::vector<double> take_losses() = 0;
 
   // The online network in eval mode. x: [N, F], q: [B, A].

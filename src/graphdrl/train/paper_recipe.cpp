@@ -142,7 +142,7 @@ void PaperRecipe::learn() {
   learner_->learn(minibatch_, rng_);
 }
 
-// Of the steps up to the last one.
+// Adds the losses since the last call to the window. last_step: the number of the last of them.
 void PaperRecipe::take_losses(std::int64_t last_step) {
   const std::vector<double> losses = learner_->take_losses();
   for (std::size_t i = 0; i < losses.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "graphdrl/base/error.h"
@@ -95,19 +96,28 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
 // Each on a thread of its own, their learners as one.
 void SideBySide::run_together(const std::vector<int>& runs, const Train& train) const {
   const int count = static_cast<int>(runs.size());
-  const auto group = make_group_(runs_.front().options.device, count);
+  const auto group = make_group_(runs_[runs.front()].options.device, count);
   std::vector<std::exception_ptr> failures(runs.size());
   std::vector<std::thread> threads;
   threads.reserve(runs.size());
+  const auto fail = [&](int i) {
+    failures[static_cast<std::size_t>(i)] = std::current_exception();
+    group->leave(i);
+  };
   for (int i = 0; i < count; ++i) {
-    threads.emplace_back([&, i] {
+    const auto train_one = [&, i] {
       try {
         train(runs[i], group->learner_of(i));
       } catch (...) {
-        failures[static_cast<std::size_t>(i)] = std::current_exception();
+        return fail(i);
       }
       group->leave(i);
-    });
+    };
+    try {
+      threads.emplace_back(train_one);
+    } catch (const std::system_error&) {  // too many threads
+      fail(i);
+    }
   }
   for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& failure : failures) {

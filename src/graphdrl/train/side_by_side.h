@@ -1,4 +1,5 @@
-// Independent trainings, one a thread. Each ends with the bytes that it would have alone.
+// Independent trainings, one a thread. On the CPU each ends with the bytes that it would have alone, on another device
+// with the same numbers within rounding.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +33,8 @@ class SideBySide {
   SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {});
 
   // On threads() threads, until all are trained or `stop` says so; then all are saved. Memory: that of as many
-  // trainings as there are threads; of all of them, on another device. `tell` may be called on any thread, but never
-  // twice at a time. Gives whether all are trained.
+  // trainings as there are threads; on another device, of those that are trained together. `tell` may be called on any
+  // thread, but never twice at a time. Gives whether all are trained.
   bool run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell);
 
   const std::vector<PlannedRun>& runs() const { return runs_; }

@@ -145,7 +145,7 @@ Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, M
                  .expected = "a new folder, or --resume to go on with it",
                  .where = folder.string()});
   }
-  options_of(options, Setting::object(), "");  // refuses what all would
+  Trainer::check(options_of(options, Setting::object(), ""), make_learner);  // refuses what all would
   std::vector<Setting> settings = draw_settings(options.rounds.front().settings, options.seed);
   std::set<std::vector<bool>> taken;
   for (const World& world : load_worlds({"paper"})) taken.insert(world.map()->blocked);

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
+#include <atomic>
+#include <cmath>
 #include <thread>
 
 #include "graphdrl/train/paper_kernel_learner.h"
@@ -78,6 +80,13 @@ class Training {
   World small_ = grid_world("..\n..\n");
 };
 
+void expect_near(std::span<const float> values, std::span<const float> expected, double tolerance) {
+  double largest = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    largest = std::max<double>(largest, std::abs(values[i] - expected[i]));
+  EXPECT_LE(largest, tolerance);
+}
+
 TEST(PaperStack, LearnsWhatEachTrainingLearnsAlone) {
   std::vector<std::pair<std::string, bool>> cases;
   for (const std::string& device : devices()) {
@@ -111,57 +120,100 @@ TEST(PaperStack, LearnsWhatEachTrainingLearnsAlone) {
       ASSERT_EQ(together[i].q.size(), alone[i].q.size());
       for (std::size_t j = 0; j < alone[i].q.size(); ++j) EXPECT_NEAR(together[i].q[j], alone[i].q[j], 5e-3);
       EXPECT_EQ(together[i].state.adam.steps, alone[i].state.adam.steps);
+      expect_near(together[i].state.online.values(), alone[i].state.online.values(), 5e-3);
+      expect_near(together[i].state.target.values(), alone[i].state.target.values(), 5e-3);
     }
     EXPECT_NE(alone[0].losses[0], alone[1].losses[0]);
   }
 }
 
+// A state that comes when steps are captured already is the one that learns on.
 TEST(PaperStack, TakesAndGivesStates) {
   Rng rng(5);
   PaperKernelLearner kernel({}, rng);
   const World world = grid_world("...\n...\n");
   for (int i = 0; i < 3; ++i) kernel.learn(random_minibatch(world, 4, rng), rng);
-  PaperStack stack(torch::kCPU, 2);
-  Rng other(6);
-  const auto first = stack.learner_of(0)("cpu", {}, other);
-  const auto second = stack.learner_of(1)("cpu", {}, other);
-  second->set_state(kernel.state());
-  const PaperState state = second->state();
-  EXPECT_TRUE(std::ranges::equal(state.online.values(), kernel.state().online.values()));
-  EXPECT_TRUE(std::ranges::equal(state.target.values(), kernel.state().target.values()));
-  EXPECT_EQ(state.adam.exp_avg_sq, kernel.state().adam.exp_avg_sq);
-  EXPECT_EQ(state.adam.steps, 3);
-  EXPECT_FALSE(std::ranges::equal(first->state().online.values(), state.online.values()));
+  for (const std::string& device : devices()) {
+    SCOPED_TRACE(device);
+    PaperStack stack(torch::Device(device), 1);
+    Rng other(6);
+    const auto learner = stack.learner_of(0)("", {}, other);
+    for (int i = 0; i < 5; ++i) learner->learn(random_minibatch(world, 4, other), other);
+    EXPECT_FALSE(std::ranges::equal(learner->state().online.values(), kernel.state().online.values()));
+    learner->set_state(kernel.state());
+    const PaperState state = learner->state();
+    EXPECT_TRUE(std::ranges::equal(state.online.values(), kernel.state().online.values()));
+    EXPECT_TRUE(std::ranges::equal(state.target.values(), kernel.state().target.values()));
+    EXPECT_EQ(state.adam.exp_avg_sq, kernel.state().adam.exp_avg_sq);
+    EXPECT_EQ(state.adam.steps, 3);
+
+    PaperKernelLearner expected({}, rng);
+    expected.set_state(state);
+    Rng same(7);
+    Rng again(7);
+    expected.learn(random_minibatch(world, 4, same), same);
+    learner->learn(random_minibatch(world, 4, again), again);
+    expect_near(learner->state().online.values(), expected.state().online.values(), 1e-4);
+    EXPECT_NEAR(learner->take_losses().back(), expected.take_losses().back(), 1e-4);
+  }
+}
+
+// More losses than the device keeps.
+TEST(PaperStack, KeepsLossesUntilTheyAreTaken) {
+  const World world = grid_world("..\n..\n");
+  for (const std::string& device : devices()) {
+    SCOPED_TRACE(device);
+    PaperStack stack(torch::Device(device), 1);
+    Rng rng(1);
+    Rng same(1);
+    const auto learner = stack.learner_of(0)("", {}, rng);
+    PaperKernelLearner kernel({}, same);
+    for (int i = 0; i < 70; ++i) {
+      learner->learn(random_minibatch(world, 2, rng), rng);
+      kernel.learn(random_minibatch(world, 2, same), same);
+    }
+    const std::vector<double> losses = learner->take_losses();
+    const std::vector<double> expected = kernel.take_losses();
+    ASSERT_EQ(losses.size(), expected.size());
+    for (int i = 0; i < 12; ++i) EXPECT_NEAR(losses[i], expected[i], 5e-3 * expected[i]) << i;
+    EXPECT_TRUE(learner->take_losses().empty());
+  }
 }
 
 // Whole trainings by the stack: the episodes, steps and about the losses of trainings alone. One has another batch
 // size: it cannot be trained together with the others.
 TEST(PaperStack, TrainsManySeedsAsSingleRuns) {
   const TemporaryFolder folder;
-  std::vector<std::string> names;
-  std::vector<PlannedRun> runs;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  const std::vector<std::uint64_t> seeds = {1, 2, 3, 4};
+  const auto options_of = [](std::uint64_t seed, const std::string& device) {
     TrainOptions options = short_paper();
     options.seed = seed;
+    options.device = device;
     if (seed == 3) options.batch_size /= 2;
-    names.push_back(std::to_string(seed));
-    train_in(folder / ("alone" + names.back()), options);
-    runs.push_back({options, RunDirectory(folder / ("stacked" + names.back()))});
-  }
-  SideBySide stacked(runs, make_paper_device_learner, make_paper_stack);
-  int asked = 0;
-  EXPECT_FALSE(stacked.run([&] { return ++asked > 60; }, [](const SideBySideNews&) {}));  // stopped and resumed
-  SideBySide resumed(runs, make_paper_device_learner, make_paper_stack);
-  ASSERT_TRUE(resumed.run([] { return false; }, [](const SideBySideNews&) {}));
-  for (const std::string& name : names) {
-    const auto metrics = [&](const std::string& run) {
-      return nlohmann::json::parse(read_file(RunDirectory(folder / (run + name)).metrics()));
-    };
-    const auto alone = metrics("alone");
-    const auto together = metrics("stacked");
-    EXPECT_EQ(together["steps"], alone["steps"]);
-    EXPECT_EQ(together["visited_nodes"], alone["visited_nodes"]) << name;
-    EXPECT_NEAR(together["loss"].get<double>(), alone["loss"].get<double>(), 0.02 * alone["loss"].get<double>());
+    return options;
+  };
+  const auto metrics = [](const RunDirectory& run) { return nlohmann::json::parse(read_file(run.metrics())); };
+  for (const std::string& device : devices()) {
+    SCOPED_TRACE(device);
+    std::vector<PlannedRun> runs;
+    for (const std::uint64_t seed : seeds) {
+      runs.push_back({options_of(seed, device), RunDirectory(folder / (device + std::to_string(seed)))});
+    }
+    SideBySide stacked(runs, make_paper_device_learner, make_paper_stack);
+    std::atomic<int> asked = 0;
+    EXPECT_FALSE(stacked.run([&] { return ++asked > 60; }, [](const SideBySideNews&) {}));  // stopped and resumed
+    SideBySide resumed(runs, make_paper_device_learner, make_paper_stack);
+    ASSERT_TRUE(resumed.run([] { return false; }, [](const SideBySideNews&) {}));
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      const RunDirectory alone(folder / (device + "-alone" + std::to_string(seeds[i])));
+      train_in(alone.path(), options_of(seeds[i], "cpu"));
+      const auto expected = metrics(alone);
+      const auto together = metrics(runs[i].directory);
+      EXPECT_EQ(together["steps"], expected["steps"]);
+      EXPECT_EQ(together["visited_nodes"], expected["visited_nodes"]) << seeds[i];
+      EXPECT_NEAR(together["loss"].get<double>(), expected["loss"].get<double>(),
+                  0.02 * expected["loss"].get<double>());
+    }
   }
 }
 

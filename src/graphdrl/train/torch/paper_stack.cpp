@@ -74,7 +74,7 @@ class StackedLearner final : public PaperLearner {
 };
 
 PaperStack::PaperStack(torch::Device device, int trainings)
-    : seats_(static_cast<std::size_t>(trainings)), present_(trainings), queue_(device), graphs_(device) {
+    : seats_(static_cast<std::size_t>(trainings)), present_(trainings), stream_(device) {
   torch::set_num_threads(1);  // so that sums on the CPU run in one order
 }
 
@@ -92,14 +92,15 @@ void PaperStack::begin(const PaperLearnerOptions& options) {
   at::globalContext().setAllowTF32CuBLAS(options.tf32);
   const auto all = static_cast<std::int64_t>(PaperParameters().values().size());
   const auto trainable = static_cast<std::int64_t>(PaperParameters::trainable_count());
-  const DeviceQueue::Scope scope(queue_);
-  const torch::TensorOptions on_device = torch::TensorOptions().device(queue_.device());
-  values_ = torch::zeros({trainings(), all}, on_device);
-  target_values_ = torch::zeros({trainings(), all}, on_device);
-  first_ = torch::zeros({trainings(), trainable}, on_device);
-  second_ = torch::zeros({trainings(), trainable}, on_device);
-  steps_ = torch::zeros({trainings(), 1}, on_device.dtype(torch::kFloat64));
-  loss_log_ = torch::zeros({kLossLogRows, trainings()}, on_device.dtype(torch::kFloat64));
+  const DeviceStream::Scope scope(stream_);
+  graphs_.emplace(stream_.device());
+  const torch::TensorOptions on_device = torch::TensorOptions().device(stream_.device());
+  values_ = torch::zeros({stack_size(), all}, on_device);
+  target_values_ = torch::zeros({stack_size(), all}, on_device);
+  first_ = torch::zeros({stack_size(), trainable}, on_device);
+  second_ = torch::zeros({stack_size(), trainable}, on_device);
+  steps_ = torch::zeros({stack_size(), 1}, on_device.dtype(torch::kFloat64));
+  loss_log_ = torch::zeros({kLossLogRows, stack_size()}, on_device.dtype(torch::kFloat64));
   loss_log_row_ = torch::zeros({1}, on_device.dtype(torch::kInt64));
   online_ = stacked_tensors(values_, /*learning=*/true);
   target_ = stacked_tensors(target_values_, /*learning=*/false);
@@ -131,7 +132,7 @@ void PaperStack::serve_where_all_wait() {
   }
   if (failure_ || (moving.empty() && learning.empty()) || std::ssize(moving) + std::ssize(learning) < present_) return;
   try {
-    const DeviceQueue::Scope scope(queue_);
+    const DeviceStream::Scope scope(stream_);
     const std::vector<int>& chosen = moving.empty() ? learning : moving;
     if (moving.empty()) {
       learn(chosen);
@@ -146,10 +147,9 @@ void PaperStack::serve_where_all_wait() {
 }
 
 void PaperStack::move(const std::vector<int>& trainings) {
-  Work& work = this->work(Request::kMove, trainings);
-  fill(work.host, trainings);
-  send(work);
-  const torch::Tensor q = work.q.to(torch::kCPU);
+  Work& work = work_for(Request::kMove, trainings);
+  send(work, trainings);
+  const torch::Tensor q = work.q.to(torch::kCPU);  // waits
   const std::int64_t size = q.size(1) * q.size(2);
   for (const int training : trainings) {
     const std::span<float> out = seats_[training].q;
@@ -160,129 +160,124 @@ void PaperStack::move(const std::vector<int>& trainings) {
 // Does not wait for the device.
 void PaperStack::learn(const std::vector<int>& trainings) {
   if (learned_ - fetched_ == kLossLogRows) fetch_losses();
-  Work& work = this->work(Request::kLearn, trainings);
-  work.sent.wait();  // the inputs of the step before
-  fill(work.host, trainings);
-  send(work);
-  for (const int training : trainings) seats_[training].in_loss_log.push_back(learned_ % kLossLogRows);
+  send(work_for(Request::kLearn, trainings), trainings);
+  for (const int training : trainings) seats_[training].log_rows.push_back(learned_ % kLossLogRows);
   ++learned_;
 }
 
 std::vector<double> PaperStack::take_losses(int training) {
-  if (!seats_[training].in_loss_log.empty()) fetch_losses();
+  if (!seats_[training].log_rows.empty()) fetch_losses();
   return std::exchange(seats_[training].losses, {});
 }
 
 void PaperStack::fetch_losses() {
-  const DeviceQueue::Scope scope(queue_);
+  const DeviceStream::Scope scope(stream_);
   const torch::Tensor log = loss_log_.to(torch::kCPU);
   const auto losses = log.accessor<double, 2>();
   for (int training = 0; training < std::ssize(seats_); ++training) {
     Seat& seat = seats_[training];
-    for (const std::int64_t row : seat.in_loss_log) seat.losses.push_back(losses[row][training]);
-    seat.in_loss_log.clear();
+    for (const std::int64_t row : seat.log_rows) seat.losses.push_back(losses[row][training]);
+    seat.log_rows.clear();
   }
   fetched_ = learned_;
 }
 
-// The tensors that a request of these trainings needs. Graphs not seen before may change all shapes.
-PaperStack::Work& PaperStack::work(Request request, const std::vector<int>& trainings) {
-  const torch::Tensor known = graphs_.adjacent();
+// Graphs not seen before may change all shapes.
+PaperStack::Work& PaperStack::work_for(Request request, const std::vector<int>& trainings) {
+  const torch::Tensor known = graphs_->adjacent();
   for (const int training : trainings) {
     Seat& seat = seats_[training];
     for (int g = 0; g < seat.graphs->graph_count(); ++g) {
       const Graph& graph = seat.graphs->graph(g);
-      if (!seat.places.contains(&graph)) seat.places[&graph] = graphs_.add(graph);
+      if (!seat.graph_indices.contains(&graph)) seat.graph_indices[&graph] = graphs_->add(graph);
     }
   }
-  if (!graphs_.adjacent().is_same(known)) {
-    queue_.wait();
+  if (!graphs_->adjacent().is_same(known)) {
+    stream_.synchronize();
     works_.clear();
   }
   const std::int64_t batch = seats_[trainings.front()].graphs->graph_count();
   const auto [found, is_new] = works_.try_emplace({request, batch});
   Work& work = found->second;
   if (!is_new) return work;
-  const torch::TensorOptions on_host = torch::TensorOptions().pinned_memory(!queue_.device().is_cpu());
+  const torch::TensorOptions on_host = torch::TensorOptions().pinned_memory(!stream_.device().is_cpu());
   work.host = empty_inputs(request, batch, on_host);
-  work.device = empty_inputs(request, batch, torch::TensorOptions().device(queue_.device()));
+  work.device = empty_inputs(request, batch, torch::TensorOptions().device(stream_.device()));
   if (request == Request::kMove) {
-    work.q = torch::zeros({this->trainings(), batch, kActionCount}, queue_.device());
-    work.run = std::make_unique<DeviceQueue::Repeated>([this, &work] { choose_values(work.device, work.q); });
+    work.q = torch::zeros({stack_size(), batch, kActionCount}, stream_.device());
+    work.run = std::make_unique<DeviceStream::CapturedWork>([this, &work] { choose_values(work.device, work.q); });
   } else {
-    work.run = std::make_unique<DeviceQueue::Repeated>([this, &work] { learn_step(work.device); });
+    work.run = std::make_unique<DeviceStream::CapturedWork>([this, &work] { learn_step(work.device); });
   }
   return work;
 }
 
 std::vector<torch::Tensor*> PaperStack::Inputs::all() {
-  return {&places, &present, &x, &next_x, &keep_scale, &rewards, &goes_on, &actions, &active};
+  std::vector<torch::Tensor*> tensors = {&active, &graph_indices, &x};
+  if (next_x.defined()) tensors.insert(tensors.end(), {&next_x, &keep_scale, &rewards, &not_terminal, &actions});
+  return tensors;
 }
 
 PaperStack::Inputs PaperStack::empty_inputs(Request request, std::int64_t batch,
                                             const torch::TensorOptions& where) const {
-  const std::int64_t all = trainings();
-  const std::int64_t nodes = graphs_.largest();
+  const std::vector<std::int64_t> features = {stack_size(), batch, graphs_->padded_nodes(), kPaperFeatureCount};
   Inputs inputs;
-  inputs.places = torch::zeros({all * batch}, where.dtype(torch::kInt64));
-  inputs.present = torch::zeros({all, batch, 1, 1}, where);
-  inputs.x = torch::zeros({all, batch, nodes, kPaperFeatureCount}, where);
+  inputs.active = torch::zeros({stack_size()}, where);
+  inputs.graph_indices = torch::zeros({stack_size() * batch}, where.dtype(torch::kInt64));
+  inputs.x = torch::zeros(features, where);
   if (request == Request::kMove) return inputs;
-  inputs.next_x = torch::zeros_like(inputs.x);
-  inputs.keep_scale = torch::zeros({all, batch, kHiddenWidth}, where);
-  inputs.rewards = torch::zeros({all, batch}, where);
-  inputs.goes_on = torch::zeros({all, batch}, where);
-  inputs.actions = torch::zeros({all, batch, 1}, where.dtype(torch::kInt64));
-  inputs.active = torch::zeros({all}, where);
+  inputs.next_x = torch::zeros(features, where);
+  inputs.keep_scale = torch::zeros({stack_size(), batch, kHiddenWidth}, where);
+  inputs.rewards = torch::zeros({stack_size(), batch}, where);
+  inputs.not_terminal = torch::zeros({stack_size(), batch}, where);
+  inputs.actions = torch::zeros({stack_size(), batch, 1}, where.dtype(torch::kInt64));
   return inputs;
 }
 
-void PaperStack::fill(Inputs& host, const std::vector<int>& trainings) {
-  const bool learning = host.active.defined();
+// Padding of x has no edge and counts nowhere: it need not be cleared.
+void PaperStack::fill(Inputs& host, const std::vector<int>& trainings) const {
+  const bool learning = host.next_x.defined();
   const std::int64_t batch = host.x.size(1);
   const std::int64_t row = host.x.size(2) * host.x.size(3);  // of one graph's features
-  for (torch::Tensor* const tensor : host.all()) {
-    if (tensor->defined()) tensor->zero_();
-  }
+  host.active.zero_();
   for (const int training : trainings) {
     const Seat& seat = seats_[training];
     const std::int64_t first = training * batch;
+    host.active.data_ptr<float>()[training] = 1;
     for (int g = 0; g < seat.graphs->graph_count(); ++g) {
       const Graph& graph = seat.graphs->graph(g);
-      host.places.data_ptr<std::int64_t>()[first + g] = seat.places.at(&graph);
-      host.present.data_ptr<float>()[first + g] = 1;
+      host.graph_indices.data_ptr<std::int64_t>()[first + g] = seat.graph_indices.at(&graph);
       const auto from = static_cast<std::ptrdiff_t>(seat.graphs->first_node(g)) * kPaperFeatureCount;
       const std::int64_t count = std::int64_t{graph.node_count()} * kPaperFeatureCount;
       std::copy_n(seat.x.begin() + from, count, host.x.data_ptr<float>() + (first + g) * row);
       if (learning) std::copy_n(seat.next_x.begin() + from, count, host.next_x.data_ptr<float>() + (first + g) * row);
     }
     if (!learning) continue;
-    host.active.data_ptr<float>()[training] = 1;
     std::copy(seat.keep_scale.begin(), seat.keep_scale.end(), host.keep_scale.data_ptr<float>() + first * kHiddenWidth);
     for (std::int64_t i = 0; i < batch; ++i) {
       host.rewards.data_ptr<float>()[first + i] = seat.batch->rewards[i];
-      host.goes_on.data_ptr<float>()[first + i] = seat.batch->terminal[i] != 0 ? 0.0F : 1.0F;
+      host.not_terminal.data_ptr<float>()[first + i] = seat.batch->terminal[i] != 0 ? 0.0F : 1.0F;
       host.actions.data_ptr<std::int64_t>()[first + i] = seat.batch->actions[i];
     }
   }
 }
 
-// Copies the inputs to the device and has it work on them.
-void PaperStack::send(Work& work) {
+// Copies what the trainings ask for to the device, and has it work on that.
+void PaperStack::send(Work& work, const std::vector<int>& trainings) {
+  work.sent.synchronize();  // what was sent before
+  fill(work.host, trainings);
   const std::vector<torch::Tensor*> from = work.host.all();
   const std::vector<torch::Tensor*> to = work.device.all();
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (from[i]->defined()) to[i]->copy_(*from[i], /*non_blocking=*/true);
-  }
-  work.sent.set(queue_);
-  work.run->run(queue_);
+  for (std::size_t i = 0; i < from.size(); ++i) to[i]->copy_(*from[i], /*non_blocking=*/true);
+  work.sent.record(stream_);
+  work.run->run(stream_);
 }
 
 StackedGraphs PaperStack::graphs_of(const Inputs& inputs) const {
-  const std::int64_t nodes = graphs_.largest();
-  const torch::Tensor counts = graphs_.counts().index_select(0, inputs.places);
-  return {.adjacent = graphs_.adjacent().index_select(0, inputs.places),
-          .counts = counts.view({trainings(), -1, nodes, 1}) * inputs.present};
+  const torch::Tensor node_mask = graphs_->node_mask().index_select(0, inputs.graph_indices);
+  return {
+      .adjacent = graphs_->adjacent().index_select(0, inputs.graph_indices),
+      .node_mask = node_mask.view({stack_size(), -1, graphs_->padded_nodes(), 1}) * inputs.active.view({-1, 1, 1, 1})};
 }
 
 void PaperStack::choose_values(const Inputs& inputs, const torch::Tensor& q) {
@@ -298,7 +293,7 @@ void PaperStack::learn_step(const Inputs& inputs) {
     const torch::Tensor next_q = stacked_q_values(graphs, inputs.next_x, target_);
     const torch::Tensor chooser = options_.double_dqn ? stacked_q_values(graphs, inputs.next_x, online_) : next_q;
     const torch::Tensor value = next_q.gather(2, chooser.argmax(2, /*keepdim=*/true)).squeeze(2);
-    targets = inputs.rewards + options_.discount * value * inputs.goes_on;
+    targets = inputs.rewards + options_.discount * value * inputs.not_terminal;
   }
   const torch::Tensor q = stacked_q_values(graphs, inputs.x, online_, inputs.keep_scale, inputs.active);
   const torch::Tensor chosen = q.gather(2, inputs.actions).squeeze(2);
@@ -326,7 +321,7 @@ void PaperStack::adam_step(const torch::Tensor& active, const torch::Tensor& gra
 }
 
 PaperState PaperStack::state_of(int training) {
-  const DeviceQueue::Scope scope(queue_);
+  const DeviceStream::Scope scope(stream_);
   const auto copy_out = [&](const torch::Tensor& all, std::span<float> values) {
     const torch::Tensor host = all[training].to(torch::kCPU).contiguous();
     std::copy_n(host.data_ptr<float>(), values.size(), values.begin());
@@ -342,7 +337,7 @@ PaperState PaperStack::state_of(int training) {
 
 void PaperStack::set_state_of(int training, const PaperState& state) {
   const torch::NoGradGuard no_grad;
-  const DeviceQueue::Scope scope(queue_);
+  const DeviceStream::Scope scope(stream_);
   const auto copy_in = [&](torch::Tensor& all, std::span<const float> values) {
     all[training].copy_(
         torch::from_blob(const_cast<float*>(values.data()), {static_cast<std::int64_t>(values.size())}));

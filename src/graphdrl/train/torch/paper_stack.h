@@ -6,11 +6,12 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "graphdrl/train/adam.h"
 #include "graphdrl/train/paper_learner.h"
-#include "graphdrl/train/torch/device_queue.h"
+#include "graphdrl/train/torch/device_stream.h"
 #include "graphdrl/train/torch/known_graphs.h"
 #include "graphdrl/train/torch/paper_stacked_network.h"
 
@@ -21,7 +22,7 @@ class PaperStack final : public PaperLearnerGroup {
   // Throws Error where LibTorch does not have the device.
   PaperStack(torch::Device device, int trainings);
 
-  // As PaperLearner, of one of the trainings. All have the same options and batch size.
+  // As PaperLearner, of one of the trainings. REQUIRES: all have the same options and batch size.
   MakePaperLearner learner_of(int training) override;
   // That training asks for nothing more. Must be called for each, or the others wait for ever.
   void leave(int training) override;
@@ -37,35 +38,35 @@ class PaperStack final : public PaperLearnerGroup {
     std::span<const float> x;       // [N, F]
     std::span<const float> next_x;  // [N, F], to learn
     const PaperMinibatch* batch = nullptr;
-    std::vector<float> keep_scale;                // [B, 256]
-    std::span<float> q;                           // [B, A], of a move
-    std::vector<std::int64_t> in_loss_log;        // rows of losses that are still there alone
-    std::vector<double> losses;                   // not taken yet
-    std::map<const Graph*, std::int64_t> places;  // of its graphs among those known, while it is there
+    std::vector<float> keep_scale;                       // [B, 256]
+    std::span<float> q;                                  // [B, A], of a move
+    std::vector<std::int64_t> log_rows;                  // its rows of loss_log_ that are not fetched yet
+    std::vector<double> losses;                          // not taken yet
+    std::map<const Graph*, std::int64_t> graph_indices;  // of its graphs among those known, while it is there
   };
 
-  // What all seats ask for, on the host and on the device. Zeros for those that ask for nothing.
+  // What all seats ask for, on the host and on the device. Those of seats that ask for nothing are old, and count
+  // nowhere.
   struct Inputs {
-    torch::Tensor places;   // [S * B] int64, among the known graphs
-    torch::Tensor present;  // [S, B, 1, 1]: 1 where a training asks
-    torch::Tensor x;        // [S, B, n, F]
+    torch::Tensor active;         // [S]: 1 where a training asks, else 0
+    torch::Tensor graph_indices;  // [S * B] int64, among the known graphs
+    torch::Tensor x;              // [S, B, n, F]
     // To learn:
-    torch::Tensor next_x;      // [S, B, n, F]
-    torch::Tensor keep_scale;  // [S, B, 256]
-    torch::Tensor rewards;     // [S, B]
-    torch::Tensor goes_on;     // [S, B]: 0 where the next state is terminal, else 1
-    torch::Tensor actions;     // [S, B, 1] int64
-    torch::Tensor active;      // [S]: 1 where a training asks
+    torch::Tensor next_x;        // [S, B, n, F]
+    torch::Tensor keep_scale;    // [S, B, 256]
+    torch::Tensor rewards;       // [S, B]
+    torch::Tensor not_terminal;  // [S, B]: 0 where the next state is terminal, else 1
+    torch::Tensor actions;       // [S, B, 1] int64
 
     std::vector<torch::Tensor*> all();
   };
-  // A request of one kind and batch size: its tensors are the same every time.
+  // Reused for every request of one kind and batch size.
   struct Work {
     Inputs host;
     Inputs device;
     torch::Tensor q;  // [S, B, A], of a move
-    DeviceQueue::Mark sent;
-    std::unique_ptr<DeviceQueue::Repeated> run;
+    DeviceStream::Event sent;
+    std::unique_ptr<DeviceStream::CapturedWork> run;
   };
 
   void begin(const PaperLearnerOptions& options);
@@ -76,16 +77,17 @@ class PaperStack final : public PaperLearnerGroup {
   std::vector<double> take_losses(int training);
   void fetch_losses();
 
-  Work& work(Request request, const std::vector<int>& trainings);
+  Work& work_for(Request request, const std::vector<int>& trainings);
   Inputs empty_inputs(Request request, std::int64_t batch, const torch::TensorOptions& where) const;
-  void fill(Inputs& host, const std::vector<int>& trainings);
-  void send(Work& work);
+  void fill(Inputs& host, const std::vector<int>& trainings) const;
+  void send(Work& work, const std::vector<int>& trainings);
   void choose_values(const Inputs& inputs, const torch::Tensor& q);
   void learn_step(const Inputs& inputs);
   void adam_step(const torch::Tensor& active, const torch::Tensor& gradient);
   StackedGraphs graphs_of(const Inputs& inputs) const;
-  std::int64_t trainings() const { return static_cast<std::int64_t>(seats_.size()); }
+  std::int64_t stack_size() const { return static_cast<std::int64_t>(seats_.size()); }
 
+  // REQUIRES: mutex_ is held.
   PaperState state_of(int training);
   void set_state_of(int training, const PaperState& state);
 
@@ -95,7 +97,7 @@ class PaperStack final : public PaperLearnerGroup {
   int present_;
   std::exception_ptr failure_;
 
-  DeviceQueue queue_;
+  DeviceStream stream_;
   bool begun_ = false;
   PaperLearnerOptions options_;
   AdamOptions adam_;
@@ -113,7 +115,7 @@ class PaperStack final : public PaperLearnerGroup {
   std::int64_t learned_ = 0;    // steps
   std::int64_t fetched_ = 0;    // of them
 
-  KnownGraphs graphs_;
+  std::optional<KnownGraphs> graphs_;                       // from begin() on
   std::map<std::pair<Request, std::int64_t>, Work> works_;  // by kind and batch size
 };
 

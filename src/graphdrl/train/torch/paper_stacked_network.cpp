@@ -45,16 +45,16 @@ torch::Tensor stacked_conv(const StackedGraphs& graphs, const torch::Tensor& x, 
   return h;
 }
 
-// Batch normalisation over the nodes of each training. x: [S, R, D]; counts: [S, R, 1].
-torch::Tensor stacked_batch_norm(const torch::Tensor& x, const torch::Tensor& counts, const NamedTensors& tensors,
+// Batch normalisation over the nodes of each training. x: [S, R, D]; node_mask: [S, R, 1].
+torch::Tensor stacked_batch_norm(const torch::Tensor& x, const torch::Tensor& node_mask, const NamedTensors& tensors,
                                  const std::string& name, const torch::Tensor& active) {
   const auto of = [&](const char* tensor) { return tensors.at(name + tensor).unsqueeze(1); };  // [S, 1, D]
   torch::Tensor mean = of(".running_mean");
   torch::Tensor variance = of(".running_var");
   if (active.defined()) {
-    const torch::Tensor rows = counts.sum(1, /*keepdim=*/true).clamp_min(2);  // [S, 1, 1]; 2 where nothing is active
-    mean = (x * counts).sum(1, /*keepdim=*/true) / rows;
-    variance = ((x - mean).square() * counts).sum(1, /*keepdim=*/true) / rows;
+    const torch::Tensor rows = node_mask.sum(1, /*keepdim=*/true).clamp_min(2);  // [S, 1, 1]; 2 where nothing is active
+    mean = (x * node_mask).sum(1, /*keepdim=*/true) / rows;
+    variance = ((x - mean).square() * node_mask).sum(1, /*keepdim=*/true) / rows;
     const torch::NoGradGuard no_grad;
     const torch::Tensor momentum = kBatchNormMomentum * active.view({-1, 1, 1});
     of(".running_mean").lerp_(mean, momentum.expand_as(mean));
@@ -93,13 +93,13 @@ torch::Tensor stacked_q_values(const StackedGraphs& graphs, const torch::Tensor&
                                const torch::Tensor& keep_scale, const torch::Tensor& active) {
   const std::int64_t trainings = x.size(0);
   const std::int64_t batch = x.size(1);
-  const torch::Tensor counts = graphs.counts.reshape({trainings, -1, 1});
+  const torch::Tensor node_mask = graphs.node_mask.reshape({trainings, -1, 1});
   torch::Tensor h = x.reshape({trainings, -1, x.size(3)});
   for (int layer = 1; layer <= 3; ++layer) {
     h = torch::elu(stacked_conv(graphs, h, tensors, "conv" + std::to_string(layer)));
-    if (layer < 3) h = stacked_batch_norm(h, counts, tensors, "bn" + std::to_string(layer), active);
+    if (layer < 3) h = stacked_batch_norm(h, node_mask, tensors, "bn" + std::to_string(layer), active);
   }
-  h = (h * counts).view({trainings, batch, -1, h.size(2)}).sum(2);  // sum pooling
+  h = (h * node_mask).view({trainings, batch, -1, h.size(2)}).sum(2);  // sum pooling
   h = torch::elu(stacked_linear(h, tensors.at("fc1.weight"), tensors.at("fc1.bias")));
   if (keep_scale.defined()) h = h * keep_scale;
   return stacked_linear(h, tensors.at("fc2.weight"), tensors.at("fc2.bias"));

@@ -19,8 +19,8 @@ using NamedTensors = std::map<std::string, torch::Tensor>;
 
 // What the graphs of S batches look like.
 struct StackedGraphs {
-  torch::Tensor adjacent;  // [S * B, n, n] float32: 1 where an edge leads from the second node to the first
-  torch::Tensor counts;    // [S, B, n, 1] float32: 1 for nodes, 0 for padding
+  torch::Tensor adjacent;   // [S * B, n, n] float32: 1 where an edge leads from the second node to the first
+  torch::Tensor node_mask;  // [S, B, n, 1] float32: 1 for nodes, 0 for padding
 };
 
 // Views of S flat buffers [S, all] of parameters and running statistics, by PyTorch's names: weights [S, …]. Each is a
