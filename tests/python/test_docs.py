@@ -44,8 +44,9 @@ def test_commands_of_the_readme_run(tmp_path):
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     (tmp_path / "my.txt").write_text(re.search(r"```\n([.#\n]+)```", text)[1])
     block = re.search(r"```\ngraphdrl=\S+\n(.*?)```", text, re.DOTALL)[1]
+    long = ("graphdrl train", "graphdrl tune")
     commands = [line.split(" #")[0].strip().replace("$graphdrl", "graphdrl") for line in block.splitlines()]
-    commands = [command for command in commands if command != "graphdrl train" and "tensorboard" not in command]
+    commands = [command for command in commands if command not in long and "tensorboard" not in command]
     commands = [command.replace("--episodes 400", "--episodes 25") for command in commands]
     shown = [" ".join(command.split()) for command in re.findall(r"`(graphdrl (?:maps generate|plan)[^`]*)`", text)]
     assert len(commands) > 10 and len(shown) == 2

@@ -143,7 +143,8 @@ void add_results_command(CLI::App& app) {
       ->type_name("RUN");
   command->add_option("--maps", options->maps, "Maps to compare on")->type_name("MAP")->capture_default_str();
   command
-      ->add_option("--figure", options->figure, "Draw the curves of Figure 2, with a band over the seeds: .svg, .png")
+      ->add_option("--figure", options->figure,
+                   "Draw the curves of Figure 2, with a band from the lowest to the highest seed: .svg, .png")
       ->check(not_empty())
       ->type_name("FILE");
   command

@@ -226,10 +226,10 @@ class TrainProgram {
  public:
   explicit TrainProgram(MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {})
       : make_learner_(std::move(make_learner)), make_group_(std::move(make_group)), flags_(app_, command_.given) {
-    app_.add_option(
-            "--seeds", command_.seeds,
-            "Independent runs of many seeds, as 1-8 or 1,4,7-9, one a thread: each in RUN/seed-N, with the bytes "
-            "that it would have alone")
+    app_.add_option("--seeds", command_.seeds,
+                    "Independent runs of many seeds, as 1-8 or 1,4,7-9, each in RUN/seed-N: on the cpu one a thread, "
+                    "each with the "
+                    "bytes that it would have alone; on cuda all together")
         ->type_name("SEEDS")
         ->check(not_empty());
     app_.add_option("--out", command_.out, "The run directory, new (default: runs/PRESET)")

@@ -36,7 +36,8 @@ Json to_json(const Tuning& tuning) {
   for (const RoundScores& scores : tuning.scores()) {
     Json settings = Json::array();
     for (const SettingScore& score : scores) {
-      settings.push_back({{"setting", tuning.settings()[score.setting]},
+      settings.push_back({{"number", score.setting},
+                          {"setting", tuning.settings()[score.setting]},
                           {"mean", score.over_seeds.mean},
                           {"std", or_null(score.over_seeds.std)},
                           {"by_seed", score.by_seed},
@@ -61,13 +62,14 @@ std::string to_text(const Tuning& tuning) {
   for (std::size_t round = 0; round < tuning.scores().size(); ++round) {
     text += fmt::format(
         "Round {}: {} seeds of {} episodes; percent of unseen maps visited\n\n"
-        "  mean    std  over the paper's (in standard errors, paired by seed)\n",
+        "  mean    std  over the paper's (in standard errors, paired by seed), setting\n",
         round + 1, tuning.options().rounds[round].seeds, tuning.options().episodes);
     for (const SettingScore& score : tuning.scores()[round]) {
       const auto& errors = score.over_paper_errors;
-      text += fmt::format("{:6.1f} {:>6}  {:>+6.1f} {:>7}  {}\n", score.over_seeds.mean,
+      text += fmt::format("{:6.1f} {:>6}  {:>+6.1f} {:>7}  {:02} {}\n", score.over_seeds.mean,
                           score.over_seeds.std ? fmt::format("{:.1f}", *score.over_seeds.std) : "–", score.over_paper,
-                          errors ? fmt::format("({:+.1f})", *errors) : "", name_of(tuning.settings()[score.setting]));
+                          errors ? fmt::format("({:+.1f})", *errors) : "", score.setting,
+                          name_of(tuning.settings()[score.setting]));
     }
     text += '\n';
   }

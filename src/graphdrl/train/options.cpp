@@ -58,8 +58,8 @@ AnyOptionField field(const char* key, T O::*member, const Defaults<std::type_ide
   return OptionField<T>{.key = key, .member = member, .defaults = defaults, .check = check, .help = help};
 }
 
-// The explorer's defaults train for half an hour on two cores (docs/explorer.md). The paper's are the paper's numbers
-// (section 2.2), and its author's code where the paper is silent (docs/paper.md).
+// The explorer's defaults train for three quarters of an hour on two cores (docs/explorer.md). The paper's are the
+// paper's numbers (section 2.2), and its author's code where the paper is silent (docs/paper.md).
 std::vector<AnyOptionField> shared_fields() {
   return {
       field("preset", &O::preset, {.explorer = kExplorerPreset, .paper = kPaperPreset},
