@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -228,8 +227,7 @@ class TrainProgram {
       : make_learner_(std::move(make_learner)), make_group_(std::move(make_group)), flags_(app_, command_.given) {
     app_.add_option("--seeds", command_.seeds,
                     "Independent runs of many seeds, as 1-8 or 1,4,7-9, each in RUN/seed-N: on the cpu one a thread, "
-                    "each with the "
-                    "bytes that it would have alone; on cuda all together")
+                    "each with the bytes that it would have alone; on cuda all together")
         ->type_name("SEEDS")
         ->check(not_empty());
     app_.add_option("--out", command_.out, "The run directory, new (default: runs/PRESET)")

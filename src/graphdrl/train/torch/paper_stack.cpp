@@ -85,8 +85,7 @@ MakePaperLearner PaperStack::learner_of(int training) {
 }
 
 void PaperStack::begin(const PaperLearnerOptions& options) {
-  if (begun_) return;
-  begun_ = true;
+  if (graphs_) return;
   options_ = options;
   adam_ = {.learning_rate = options.learning_rate};
   at::globalContext().setAllowTF32CuBLAS(options.tf32);

@@ -98,7 +98,6 @@ class PaperStack final : public PaperLearnerGroup {
   std::exception_ptr failure_;
 
   DeviceStream stream_;
-  bool begun_ = false;
   PaperLearnerOptions options_;
   AdamOptions adam_;
   torch::Tensor values_;         // [S, all]
