@@ -18,14 +18,17 @@ inline void PrintTo(const TrainOptions& options, std::ostream* out) {
   *out << options.preset << ' ' << options.algorithm << options.teacher;
 }
 
-// Of six episodes.
+// Steps of `short_paper`, which asks before each whether to stop.
+inline constexpr int kShortPaperSteps = 40;
+
+// Of four episodes.
 inline TrainOptions short_paper() {
   TrainOptions options = default_options(kPaperPreset);
   options.maps = {"paper:a", "paper:h"};
-  options.episodes = 6;
-  options.budget = "12";
+  options.episodes = 4;
+  options.budget = std::to_string(kShortPaperSteps / options.episodes);
   options.batch_size = 8;
-  options.replay_capacity = 40;  // wraps around
+  options.replay_capacity = 24;  // wraps around
   options.checkpoint_every = 2;
   return options;
 }
