@@ -18,7 +18,7 @@ inline void PrintTo(const TrainOptions& options, std::ostream* out) {
   *out << options.preset << ' ' << options.algorithm << options.teacher;
 }
 
-// Steps of `short_paper`, which asks before each whether to stop.
+// Steps of `short_paper`. It asks whether to stop before each, and after each episode.
 inline constexpr int kShortPaperSteps = 40;
 
 // Of four episodes.

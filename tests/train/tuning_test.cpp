@@ -66,7 +66,7 @@ TEST(Tuning, ScoresAreMeansOverValidationMapsWhateverTheInterruptions) {
   for (bool finished = false; !finished; ++sessions) {
     Tuning pieces = Tuning::resume(folder / "pieces");
     std::atomic<int> asked = 0;
-    finished = pieces.run([&] { return asked++ > 100; }, kUnheard);
+    finished = pieces.run([&] { return asked++ > 80; }, kUnheard);
     scores = pieces.scores();
   }
   set_threads(1);
