@@ -54,9 +54,8 @@ TEST_P(AnyTraining, EndsWithTheSameBytesHoweverOftenItIsInterrupted) {
     while (!train(*Trainer::resume(pieces), [asked = 0, questions]() mutable { return asked++ == questions; })) {
       ++sessions;
     }
-    EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? kShortPaperSteps / (questions + 1)
-                        : questions == 1                  ? 1
-                                                          : 0);
+    const int rounds_sessions = questions == 1 ? 1 : 0;
+    EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? kShortPaperSteps / (questions + 1) : rounds_sessions);
     EXPECT_TRUE(bytes_of(pieces) == whole) << questions;
   }
 }
