@@ -1,5 +1,6 @@
 #include "graphdrl/eval/bench.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <vector>
@@ -7,9 +8,12 @@
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/vector_env.h"
+#include "graphdrl/env/world_families.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/eval/statistics.h"
+#include "graphdrl/graph/search.h"
 #include "graphdrl/nn/paper_features.h"
+#include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"
 
@@ -91,27 +95,81 @@ EnvironmentBench bench_environment() {
 
 namespace {
 
-std::uint64_t signature_of_walks(std::initializer_list<const char*> policies) {
-  Signature signature;
+void add(Signature& signature, std::span<const NodeId> walk) {
+  for (const NodeId node : walk) signature.add(static_cast<std::uint64_t>(node));
+}
+
+// Walks of the paper's maps, from every start.
+void add_paper_walks(Signature& signature, std::initializer_list<const char*> policies) {
   for (const World& world : load_worlds({"paper"})) {
     for (const char* const name : policies) {
       const auto policy = make_policy(name, 1);
-      for (const RolloutResult& result : roll_out(world, world.valid_nodes(), {}, *policy)) {
-        for (const NodeId node : result.walk) signature.add(static_cast<std::uint64_t>(node));
+      for (const RolloutResult& result : roll_out(world, world.valid_nodes(), {}, *policy)) add(signature, result.walk);
+    }
+  }
+}
+
+// The same world with a prize of 0 to 5 for each node.
+World with_prizes(const World& world, Rng& rng) {
+  std::vector<double> prizes;
+  for (NodeId node = 0; node < world.node_count(); ++node) prizes.push_back(rng.below(6));
+  return World(world.name() + "-prizes", world.graph(), world.blocked(), {}, std::move(prizes));
+}
+
+// Random worlds with and without costs, directions and prizes, each under two budgets and three kinds of end.
+std::vector<Task> random_tasks() {
+  constexpr std::array<double, 2> kRatios = {0.4, 1.1};
+  const std::vector<WorldSpec> specs = {
+      {.family = "loop-maze", .size = 9},
+      {.family = "obstacles", .size = 8},
+      {.family = "geometric", .size = 40, .weighted = true},
+      {.family = "erdos-renyi", .size = 30, .directed = true},
+      {.family = "geometric", .size = 30, .weighted = true, .directed = true},
+  };
+  Rng rng(1);
+  std::vector<Task> tasks;
+  for (const WorldSpec& spec : specs) {
+    const World plain = random_world(spec, rng);
+    for (const World& world : {plain, with_prizes(plain, rng)}) {
+      const auto any_node = [&] {
+        return world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
+      };
+      for (const double ratio : kRatios) {
+        const NodeId start = any_node();
+        const double budget = std::floor(ratio * world.valid_count() * world.open().mean_cost());
+        const NodeId far_end = any_node();
+        const bool in_reach = costs_to(world.into(), far_end)[start] <= budget;
+        for (const NodeId end : {kNoNode, start, in_reach ? far_end : start}) {
+          tasks.push_back({.view = world, .start = start, .budget = budget, .end = end});
+        }
       }
     }
   }
-  return signature.value();
+  return tasks;
+}
+
+void add_random_tasks(Signature& signature, std::initializer_list<const char*> planners) {
+  for (const Task& task : random_tasks()) {
+    for (const char* const name : planners) add(signature, make_planner(name, 1)->plan(task).walk);
+  }
 }
 
 }  // namespace
 
 std::uint64_t planner_signature() {
-  return signature_of_walks({"random", "random-walk", "dfs", "nearest", "beam", "exact"});
+  Signature signature;
+  add_paper_walks(signature, {"random", "random-walk", "dfs", "nearest", "beam", "exact"});
+  add_random_tasks(signature, {"dfs", "nearest", "beam"});
+  // Prizes are whole numbers, and so is what a bound says of them.
+  for (const Task& task : random_tasks()) signature.add(static_cast<std::uint64_t>(max_prize(task) + 1e-6));
+  return signature.value();
 }
 
 std::uint64_t learned_signature() {
-  return signature_of_walks({"explorer", "guided"});
+  Signature signature;
+  add_paper_walks(signature, {"explorer", "guided"});
+  add_random_tasks(signature, {"explorer", "guided", "search:2000"});
+  return signature.value();
 }
 
 double bench_move_ms() {

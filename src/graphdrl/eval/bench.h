@@ -13,11 +13,12 @@ struct EnvironmentBench {
 // On as many threads as parallel_for uses.
 EnvironmentBench bench_environment();
 
-// The walks of the planners and policies that learned nothing on the paper's maps, as one number.
+// The walks of the planners and policies that learned nothing, as one number: on the paper's maps, and on random worlds
+// with and without costs, directions, prizes and ends. The bounds of the latter, too.
 std::uint64_t planner_signature();
 
-// Likewise of the explorer, alone and guiding a beam. Its networks compute in floats, so another build or processor may
-// give another number.
+// Likewise of the explorer, alone and guiding a beam, and of the search, which begins with its walk too. The network
+// computes in floats, so another build or processor may give another number.
 std::uint64_t learned_signature();
 
 // Median time to choose one move on the paper's map a with a network of random weights, features built from scratch.
