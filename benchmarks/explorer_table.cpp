@@ -23,7 +23,7 @@
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/exact.h"
-#include "graphdrl/planners/explorer.h"
+#include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
 namespace {
@@ -119,7 +119,7 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
     }
     bounds.push_back(0);
     for (const NodeId start : starts) {
-      const Task task{.view = world, .start = start, .budget = budget};
+      const Task task(world, start, budget);
       const std::optional<double> best = one.solved ? exact_prize(task) : std::nullopt;
       bounds.back() += share * (best ? *best : max_prize(task));
       for (Column& column : columns) {
@@ -128,7 +128,7 @@ void print_case(const Case& one, const SharedExplorer& explorer) {
         const Plan plan = column.plan(task);
         const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
         column.times_ms.push_back(time.count());
-        Episode check(world, {.budget = budget, .action_space = action_space_of(world)});
+        Episode check(world, task, {.action_space = action_space_of(world)});
         follow_walk(check, plan.walk);
         column.coverage.back() += share * check.visited_count();
         column.visits += check.visited_count() - 1;
@@ -223,7 +223,7 @@ int main(int argc, char** argv) {
     } else if (argument == "--threads" && i + 1 < argc && std::atoi(argv[i + 1]) > 0) {
       set_threads(std::atoi(argv[++i]));
     } else if (argument == "--policy" && i + 1 < argc) {
-      explorer = read_explorer_file(argv[++i]);
+      explorer = std::get<SharedExplorer>(read_policy(argv[++i]));
     } else {
       std::fputs(
           "usage: explorer_table [--policy FILE] [--validation] [--quick] [--alone] [--only TEXT] [--threads N]\n",

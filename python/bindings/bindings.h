@@ -8,6 +8,7 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include <functional>
@@ -69,9 +70,10 @@ NodeId checked_node(const World& world, std::int64_t node, std::string_view role
 void run_unlocked(const std::function<void()>& work, const std::function<void()>& listen,
                   const std::function<void()>& stop);
 
-// The same for planning, whose reports go to on_progress(visited, bound) where it is not None. A stop ends this
-// planning and no other.
-void run_planning(const nb::object& on_progress, const std::function<void(const Report&)>& work);
+// The same for planning within a time limit, in seconds. The clock's listener is on_progress(visited, bound), unless it
+// is None. A stop ends this planning and no other.
+void run_planning(std::optional<double> time_limit, const nb::object& on_progress,
+                  const std::function<void(const Clock&)>& work);
 
 // What a policy is shown: an episode under way, for one call of the policy; or the state after a walk, which lasts.
 class State {

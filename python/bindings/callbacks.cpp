@@ -39,8 +39,8 @@ class CallablePolicy final : public Policy {
     choose_.reset();
   }
 
-  void act(std::span<const Observation> observations, std::span<int> actions) override {
-    if (planning_stopped()) return std::fill(actions.begin(), actions.end(), kStop);
+  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock) override {
+    if (clock.stopped()) return std::fill(actions.begin(), actions.end(), kStop);
     wait_for_exit_where_python_ends();
     const nb::gil_scoped_acquire lock;
     for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = action(observations[i]);
@@ -80,7 +80,8 @@ std::unique_ptr<Policy> make_callable_policy(nb::object choose) {
 
 State::State(const World& world, std::span<const NodeId> walk, double budget, End end) {
   auto own = std::make_unique<Own>(
-      Own{.episode = Episode(world, {.budget = budget, .end = end, .action_space = action_space_of(world)}),
+      Own{.episode = Episode(world, Task(world, walk.empty() ? kNoNode : walk.front(), budget, end),
+                             {.action_space = action_space_of(world)}),
           .observation = {}});
   follow_walk(own->episode, walk);
   own->observation = own->episode.observation();
@@ -142,28 +143,23 @@ void run_unlocked(const std::function<void()>& work, const std::function<void()>
   if (failure) std::rethrow_exception(failure);
 }
 
-void run_planning(const nb::object& on_progress, const std::function<void(const Report&)>& work) {
+void run_planning(std::optional<double> time_limit, const nb::object& on_progress,
+                  const std::function<void(const Clock&)>& work) {
   std::mutex mutex;
-  std::optional<PlanProgress> news;
+  std::optional<Progress> news;
   std::atomic<bool> stopped = false;
-  Report report;
-  if (!on_progress.is_none()) {
-    report = [&](const PlanProgress& progress) {
-      const std::lock_guard lock(mutex);
-      news = progress;
-    };
-  }
+  const ProgressListener listener = [&](const Progress& progress) {
+    const std::lock_guard lock(mutex);
+    news = progress;
+  };
   const auto listen = [&] {
     std::unique_lock lock(mutex);
-    const std::optional<PlanProgress> told = std::exchange(news, std::nullopt);
+    const std::optional<Progress> told = std::exchange(news, std::nullopt);
     lock.unlock();
-    if (told) on_progress(told->visited, told->bound);
+    if (told && !on_progress.is_none()) on_progress(told->visited, told->bound);
   };
-  const auto work_until_stopped = [&] {
-    const StopScope scope(stopped);
-    work(report);
-  };
-  run_unlocked(work_until_stopped, listen, [&] { stopped = true; });
+  const Clock clock(time_limit, &stopped, on_progress.is_none() ? nullptr : &listener);
+  run_unlocked([&] { work(clock); }, listen, [&] { stopped = true; });
 }
 
 void bind_callbacks(nb::module_& module) {
@@ -202,7 +198,7 @@ void bind_callbacks(nb::module_& module) {
           "visited_count", [](const State& state) { return state.get().visited_count; },
           "How many different nodes are visited, the start included.")
       .def_prop_ro(
-          "budget", [](const State& state) { return state.get().budget; },
+          "budget", [](const State& state) { return state.get().task->budget(); },
           "What the whole walk may cost, in units of cost.")
       .def_prop_ro(
           "spent", [](const State& state) { return state.get().spent; },

@@ -113,7 +113,7 @@ class GraphEpisodes final : public Episodes {
     return mean > 0 ? static_cast<float>(std::min(world.prize(node) / mean / 8, 1.0)) : 0.0f;
   }
   static float budget_left(const Observation& now) {
-    return now.budget > 0 ? static_cast<float>(std::clamp(1 - now.spent / now.budget, 0.0, 1.0)) : 0.0f;
+    return now.task->budget() > 0 ? static_cast<float>(std::clamp(1 - now.spent / now.task->budget(), 0.0, 1.0)) : 0.0f;
   }
 
   void begun(int i, const Episode& episode) override {
@@ -217,7 +217,6 @@ class FirstVisitEpisodes final : public Episodes {
  private:
   struct Memory {
     NodeSet visited;
-    std::optional<CostToEnd> to_end;  // where the walk must end somewhere
     ExplorerEncoder encoder;
     NearestFirst search;
     ExplorerBatch seen;
@@ -227,13 +226,7 @@ class FirstVisitEpisodes final : public Episodes {
   void begun(int i, const Episode& episode) override {
     Memory& memory = memories_[static_cast<std::size_t>(i)];
     const Observation now = episode.observation();
-    memory.visited = NodeSet(now.view->node_count());
-    memory.visited.insert(now.position);
-    memory.to_end.reset();
-    if (now.end != kNoNode) {
-      memory.to_end.emplace(
-          Task{.view = *now.view, .start = now.position, .budget = now.budget, .end = now.end, .visited = {}});
-    }
+    memory.visited = now.ground();
     show(i, episode);
   }
 
@@ -269,15 +262,14 @@ class FirstVisitEpisodes final : public Episodes {
     Memory& memory = memories_[static_cast<std::size_t>(i)];
     const Observation now = episode.observation();
     memory.seen.clear();
-    const auto visits = memory.encoder.append(*now.view,
-                                              {.visited = memory.visited,
-                                               .visited_count = now.visited_count,
-                                               .position = now.position,
-                                               .spendable = now.spendable,
-                                               .to_end = memory.to_end ? &*memory.to_end : nullptr},
-                                              kExplorerScope, memory.seen);
+    const Exploration state(now, memory.visited);
+    const auto visits = memory.encoder.append(state, kExplorerScope, memory.seen);
     memory.visits.assign(visits.begin(), visits.end());
-    if (visits.empty() && memory.encoder.overlooked()) add_far_visit(memory, now);
+    if (visits.empty() && memory.encoder.overlooked()) {
+      // The nearest, where all are too far off to be looked at: nothing is seen of it.
+      const FirstVisit far = state.nearest_first_visit(memory.search);
+      if (far.node != kNoNode) memory.visits.push_back(far);
+    }
     const std::span<bool> mask = mask_of(i);
     const std::span<std::int64_t> targets = targets_of(i);
     const std::span<float> out = observation_of(i);
@@ -293,16 +285,6 @@ class FirstVisitEpisodes final : public Episodes {
         row[f + 1] = std::clamp(memory.seen.visit_x[v * kExplorerVisitFeatureCount + f], -kMost, kMost);
       }
     }
-  }
-
-  // The nearest, where all are too far off to be looked at: nothing is seen of it.
-  static void add_far_visit(Memory& memory, const Observation& now) {
-    memory.search.run(now.view->open(), now.position, now.spendable, [&](NodeId node, double cost) {
-      if (memory.visited.contains(node)) return NearestFirst::Next::kThrough;
-      if (memory.to_end && cost + (*memory.to_end)(node) > now.spendable) return NearestFirst::Next::kPast;
-      memory.visits.push_back({node, cost});
-      return NearestFirst::Next::kEnd;
-    });
   }
 
   int visits_;

@@ -2,7 +2,7 @@
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/picture.h"
@@ -11,64 +11,71 @@
 namespace graphdrl::python {
 namespace {
 
-Task task_of(const World& world, const std::string& budget, std::optional<std::int64_t> start,
-             std::optional<std::int64_t> end) {
-  const NodeId first = start ? checked_node(world, *start, "start") : world.valid_nodes().front();
-  return {.view = world,
-          .start = first,
-          .budget = Budget::parse(budget).cost_in(world),
-          .end = end ? checked_node(world, *end, "end") : kNoNode};
+// An end: a node, "start" or "anywhere".
+using AskedEnd = std::variant<std::int64_t, std::string>;
+
+Asked asked_of(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
+               const std::optional<AskedEnd>& end) {
+  Asked asked;
+  if (budget) asked.budget = Budget::parse(*budget);
+  if (start) asked.start = checked_node(world, *start, "start");
+  if (!end) return asked;
+  const auto* const node = std::get_if<std::int64_t>(&*end);
+  asked.end =
+      node != nullptr ? End::at(checked_node(world, *node, "end")) : parse_end(world, std::get<std::string>(*end));
+  return asked;
 }
 
-PlanReport plan(const World& world, const std::string& budget, std::optional<std::int64_t> start,
-                std::optional<std::int64_t> end, const std::string& policy, const nb::object& own,
+PlanReport plan(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
+                const std::optional<AskedEnd>& end, const std::string& policy, const nb::object& own,
                 std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress) {
-  const Task task = task_of(world, budget, start, end);
-  check(task);
-  PlanRequest request{.policy = policy, .seed = seed, .time_limit_s = time_limit};
+  const Task task(world, asked_of(world, budget, start, end));
+  PlanRequest request{.policy = policy, .seed = seed};
   if (!own.is_none()) {
     const OwnPolicy chosen = own_policy_of(own);
     request.own_planner = chosen.planner;
     request.own_policy = chosen.policy;
   }
   std::optional<PlanReport> answer;
-  run_planning(on_progress, [&](const Report& report) { answer = make_plan(world, task, request, report); });
+  run_planning(time_limit, on_progress, [&](const Clock& clock) { answer = make_plan(world, task, request, clock); });
   return std::move(*answer);
 }
 
-double upper_bound(const World& world, const std::string& budget, std::optional<std::int64_t> start,
-                   std::optional<std::int64_t> end, std::optional<double> time_limit) {
-  const Task task = task_of(world, budget, start, end);
+double upper_bound(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
+                   const std::optional<AskedEnd>& end, std::optional<double> time_limit) {
+  const Task task(world, asked_of(world, budget, start, end));
   double bound = 0;
-  run_planning(nb::none(), [&](const Report&) {
-    bound = max_prize(task, deadline_after(time_limit ? TimeLimit(*time_limit) : std::nullopt));
-  });
+  run_planning(time_limit, nb::none(), [&](const Clock& clock) { bound = max_prize(task, clock); });
   return bound;
 }
 
-// What pickles keep beside the world and the walk: budget, end, policy, bound, optimal, most visited, out of reach,
-// time.
-using Claims = std::tuple<double, NodeId, std::string, double, bool, int, int, double>;
-
-Claims claims_of(const PlanReport& report) {
-  return {report.task.budget,  report.task.end,    report.policy,      report.plan.bound,
-          report.plan.optimal, report.max_visited, report.unreachable, report.elapsed_s};
+// What pickles keep beside the world and the walk.
+nb::dict claims_of(const PlanReport& report) {
+  nb::dict claims;
+  claims["budget"] = report.task.budget();
+  claims["end"] = report.task.end();
+  claims["policy"] = report.policy;
+  claims["bound"] = report.plan.bound;
+  claims["optimal"] = report.plan.optimal;
+  claims["unreachable"] = report.unreachable;
+  claims["elapsed_s"] = report.elapsed_s;
+  return claims;
 }
 
-PlanReport restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, const Claims& claims) {
-  const auto& [budget, end, policy, bound, optimal, most, unreachable, elapsed_s] = claims;
+PlanReport restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, const nb::dict& claims) {
   std::vector<NodeId> nodes(walk.data(), walk.data() + walk.size());
   if (nodes.empty()) throw Error({.what = "the walk is empty", .where = world.name()});
   for (const NodeId node : nodes) checked_node(world, node, "a step");
-  const Task task{.view = world, .start = nodes.front(), .budget = budget, .end = end};
+  const auto end = nb::cast<NodeId>(claims["end"]);
+  const Task task(world, nodes.front(), nb::cast<double>(claims["budget"]),
+                  end == kNoNode ? End::anywhere() : End::at(end));
   PlanReport report{.world = world,
                     .task = task,
-                    .policy = policy,
-                    .plan = plan_of_walk(task, std::move(nodes), optimal),
-                    .max_visited = most,
-                    .unreachable = unreachable,
-                    .elapsed_s = elapsed_s};
-  report.plan.bound = bound;
+                    .policy = nb::cast<std::string>(claims["policy"]),
+                    .plan = plan_of_walk(task, std::move(nodes), nb::cast<bool>(claims["optimal"])),
+                    .unreachable = nb::cast<int>(claims["unreachable"]),
+                    .elapsed_s = nb::cast<double>(claims["elapsed_s"])};
+  report.plan.bound = nb::cast<double>(claims["bound"]);
   return report;
 }
 
@@ -87,8 +94,8 @@ void bind_planning(nb::module_& module) {
       .def_prop_ro("cost", [](const PlanReport& report) { return report.plan.cost; })
       .def_prop_ro("bound", [](const PlanReport& report) { return report.plan.bound; })
       .def_prop_ro("optimal", [](const PlanReport& report) { return report.plan.optimal; })
-      .def_prop_ro("budget", [](const PlanReport& report) { return report.task.budget; })
-      .def_prop_ro("end", [](const PlanReport& report) { return report.task.end; })
+      .def_prop_ro("budget", [](const PlanReport& report) { return report.task.budget(); })
+      .def_prop_ro("end", [](const PlanReport& report) { return report.task.end(); })
       .def_prop_ro("policy", [](const PlanReport& report) { return report.policy; })
       .def_prop_ro("elapsed_s", [](const PlanReport& report) { return report.elapsed_s; })
       .def_prop_ro("summary", [](const PlanReport& report) { return plan_summary(report); })
@@ -101,10 +108,10 @@ void bind_planning(nb::module_& module) {
         check_plan_file(report.world, file);
         write_plan(report, file);
       });
-  module.def("plan", &plan, nb::arg("world"), nb::arg("budget"), nb::arg("start").none(), nb::arg("end").none(),
+  module.def("plan", &plan, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(), nb::arg("end").none(),
              nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"),
              nb::arg("on_progress").none());
-  module.def("upper_bound", &upper_bound, nb::arg("world"), nb::arg("budget"), nb::arg("start").none(),
+  module.def("upper_bound", &upper_bound, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(),
              nb::arg("end").none(), nb::arg("time_limit").none());
 }
 

@@ -1,9 +1,9 @@
 #include "bindings.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/nn/onnx_export.h"
-#include "graphdrl/planners/explorer.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/planner_policy.h"
+#include "graphdrl/planners/registry.h"
 
 namespace graphdrl::python {
 namespace {
@@ -72,15 +72,6 @@ nb::object numbers(const std::vector<int>& values) {
   return nb::cast(to_numpy(std::vector<std::int64_t>(values.begin(), values.end())));
 }
 
-ExplorationState exploration_of(const Observation& observation, NodeSet& visited, const CostToEnd& to_end) {
-  for (const NodeId node : observation.walk) visited.insert(node);
-  return {.visited = visited,
-          .visited_count = observation.visited_count,
-          .position = observation.position,
-          .spendable = observation.spendable,
-          .to_end = observation.end == kNoNode ? nullptr : &to_end};
-}
-
 // An explorer in Python's hands: its network, and its scratch memory for questions about single states.
 class Explorer {
  public:
@@ -93,11 +84,8 @@ class Explorer {
 
   // Appends a state to the batch. Gives its first visits until the next call.
   std::span<const FirstVisit> append(const State& state, ExplorerBatch& batch) {
-    const Observation& now = state.get();
-    NodeSet visited(now.view->node_count());
-    const CostToEnd to_end(
-        Task{.view = *now.view, .start = now.position, .budget = now.budget, .end = now.end, .visited = {}});
-    return scorer_.encoder().append(*now.view, exploration_of(now, visited, to_end), kExplorerScope, batch);
+    const NodeSet ground = state.get().ground();
+    return scorer_.encoder().append(Exploration(state.get(), ground), kExplorerScope, batch);
   }
 
   // Nodes, costs, shortfalls, the ceiling, and the place of the one it would make; -1 where there is none.
@@ -114,7 +102,7 @@ class Explorer {
     int choice = -1;
     if (!visits.empty()) {
       scorer_.shortfalls(batch, shortfalls);
-      choice = static_cast<int>(scorer_.choose(*state.get().view, batch, visits));
+      choice = static_cast<int>(scorer_.choose(*state.get().task, batch, visits));
     }
     return nb::make_tuple(to_numpy(std::move(nodes)), to_numpy(std::move(costs)), to_numpy(std::move(shortfalls)),
                           batch.ceiling[0], choice);
@@ -156,10 +144,10 @@ class QNetwork {
     GraphBatch batch;
     std::vector<float> x;
     for (const Observation& now : observations_of(states)) {
-      batch.add(now.view->graph());
+      batch.add(now.view().grid().graph());
       const std::size_t size = x.size();
       x.resize(static_cast<std::size_t>(batch.node_count()) * kPaperFeatureCount);
-      policy_.encoder_for(*now.view).encode(now.position, now.visits, std::span(x).subspan(size));
+      policy_.encoder_for(now.view()).encode(now.position, now.visits, std::span(x).subspan(size));
     }
     nb::dict inputs;
     inputs["x"] = to_numpy(std::move(x), kPaperFeatureCount);
@@ -231,19 +219,26 @@ void bind_policies(nb::module_& module) {
   bind_network<Explorer, ExplorerParameters>(module, "Explorer")
       .def(nb::init<const Tensors&>(), nb::arg("tensors"))
       .def_static("builtin", [] { return std::make_unique<Explorer>(builtin_explorer()); })
-      .def_static("read", [](const std::string& path) { return std::make_unique<Explorer>(read_explorer_file(path)); })
       .def("first_visits", &Explorer::first_visits, nb::arg("state"));
   bind_network<QNetwork, PaperParameters>(module, "PaperNetwork")
       .def(nb::init<const Tensors&, const std::string&>(), nb::arg("tensors"), nb::arg("wall"))
       .def_prop_ro("wall", [](const QNetwork& self) { return std::string(name_of(self.parameters().wall())); })
-      .def_static("read", [](const std::string& path) { return std::make_unique<QNetwork>(read_policy_file(path)); })
       .def_static("random",
                   [](std::uint64_t seed) {
                     Rng rng(seed);
                     return std::make_unique<QNetwork>(PaperParameters(rng));
                   })
       .def("q_values", &QNetwork::q_values, nb::arg("states"));
-  module.def("is_explorer_file", &is_explorer_file, nb::arg("path"));
+  module.def(
+      "read_policy",
+      [](const std::string& path) -> nb::object {
+        TrainedPolicy policy = read_policy(path);
+        if (auto* const explorer = std::get_if<SharedExplorer>(&policy)) {
+          return nb::cast(std::make_unique<Explorer>(*explorer));
+        }
+        return nb::cast(std::make_unique<QNetwork>(std::get<PaperParameters>(std::move(policy))));
+      },
+      nb::arg("path"));
 }
 
 }  // namespace graphdrl::python

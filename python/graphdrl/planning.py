@@ -128,18 +128,11 @@ def _restore(world: World, walk: NDArray[np.int32], claims: tuple[Any, ...]) -> 
     return Plan(world, _core.PlanReport.restore(world._core, walk, claims))
 
 
-def _numbers(world: World, start: Node | None, end: Node | None) -> tuple[int | None, int | None]:
-    """The start and the end as numbers; "start" as an end is the start, where no node is called so."""
-    _, given_start, given_end = world._core.given
-    if start is not None:
-        first = world.number(start)
-    else:
-        first = given_start if given_start >= 0 else int(world._core.valid_nodes[0])
-    if end is None:
-        return first, given_end if given_end >= 0 else None
-    if isinstance(end, str) and end in ("start", "anywhere") and (world._numbers is None or end not in world._numbers):
-        return first, first if end == "start" else None
-    return first, world.number(end)
+def _end(world: World, end: Node | None) -> int | str | None:
+    """An end as a number or a word. "start" and "anywhere" are words, whatever nodes are called; "#N" is node N."""
+    if end is None or (isinstance(end, str) and (end in ("start", "anywhere") or end.startswith("#"))):
+        return end
+    return world.number(end)
 
 
 def _end_text(worlds: list[World], end: Node | None) -> str:
@@ -148,9 +141,10 @@ def _end_text(worlds: list[World], end: Node | None) -> str:
         return ""
     if isinstance(end, str) and any(world._numbers is None or end not in world._numbers for world in worlds):
         return text(end, "end")
-    numbers = {world.number(end) for world in worlds}
-    if len(numbers) == 1:
-        return f"#{numbers.pop()}"
+    ends = {_end(world, end) for world in worlds}
+    if len(ends) == 1:
+        only = ends.pop()
+        return only if isinstance(only, str) else f"#{only}"
     if isinstance(end, str):
         return text(end, "end")
     if isinstance(end, (tuple, list)) and all(world.is_grid for world in worlds):
@@ -162,6 +156,20 @@ def _require_world(world: World) -> World:
     if not isinstance(world, World):
         raise Error(f"expected a World, got {shown(world)}: World.from_file(), from_networkx() … make one")
     return world
+
+
+def _asked(world: World, budget: Budget | None, start: Node | None, end: Node | None) -> tuple[Any, ...]:
+    """What _core makes a task of. None is what the world's file says, else the default."""
+    return (
+        _require_world(world)._core,
+        None if budget is None else budget_text(budget),
+        None if start is None else world.number(start),
+        _end(world, end),
+    )
+
+
+def _seconds(time_limit: float | None) -> float | None:
+    return None if time_limit is None else number(time_limit, "time limit")
 
 
 def policy_of(policy: str | Policy | OwnPolicy) -> tuple[str, Any]:
@@ -194,7 +202,8 @@ def plan(
         world: where to walk.
         budget: in units of cost, or a text as `"1.1x"`; None for that of the world's file.
         start: a node; by default the file's, else the first free one.
-        end: a node, `"start"` or `"anywhere"`; by default the file's, else anywhere.
+        end: a node, or one of the words `"start"` and `"anywhere"`, also where a node is called so: `"#N"` is then the
+            node of number N. By default the file's, else anywhere.
         policy: a name as of `graphdrl plan --policy`, a Policy, or a callable as `evaluate` takes.
         time_limit: seconds for all of it. Without one, the same arguments give the same walk.
         seed: of the search, and of random policies.
@@ -205,16 +214,9 @@ def plan(
         Error: a blocked or missing node, a bad budget or policy, an end out of reach. What `on_progress` and a policy
             of your own raise comes out as it is.
     """
-    core = _require_world(world)._core
-    if budget is None:
-        budget = core.given[0]
-    if budget is None:
-        raise Error(f"{world.name}: no budget is given")
-    first, last = _numbers(world, start, end)
     name, own = policy_of(policy)
-    limit = None if time_limit is None else number(time_limit, "time limit")
     report = _core.plan(
-        core, budget_text(budget), first, last, name, own, limit, whole_number(seed, "seed"),
+        *_asked(world, budget, start, end), name, own, _seconds(time_limit), whole_number(seed, "seed"),
         function(on_progress, "on_progress"),
     )  # fmt: skip
     return Plan(world, report)
@@ -222,7 +224,7 @@ def plan(
 
 def upper_bound(
     world: World,
-    budget: Budget,
+    budget: Budget | None = None,
     start: Node | None = None,
     end: Node | None = None,
     *,
@@ -232,7 +234,7 @@ def upper_bound(
 
     Args:
         world: where to walk.
-        budget: in units of cost, or a text as `"1.1x"`.
+        budget: as of `plan`.
         start: as of `plan`.
         end: as of `plan`.
         time_limit: seconds, 0 to 1,000,000. Without one, the same arguments give the same bound.
@@ -240,11 +242,7 @@ def upper_bound(
     Raises:
         Error: a blocked or missing node, a bad budget or time limit.
     """
-    limit = None if time_limit is None else number(time_limit, "time limit")
-    if limit is not None and not 0 <= limit <= 1e6:
-        raise wrong("time limit", "0 to 1000000 seconds", time_limit)
-    first, last = _numbers(_require_world(world), start, end)
-    return _core.upper_bound(world._core, budget_text(budget), first, last, limit)
+    return _core.upper_bound(*_asked(world, budget, start, end), _seconds(time_limit))
 
 
 def evaluate(

@@ -91,9 +91,8 @@ class Policy:
         if file == "explorer":
             return Explorer._of(_core.Explorer.builtin(), file)
         name = pathlib.Path(file).stem
-        if _core.is_explorer_file(file):
-            return Explorer._of(_core.Explorer.read(file), name)
-        return PaperNetwork._of(_core.PaperNetwork.read(file), name)
+        core = _core.read_policy(file)
+        return (Explorer if isinstance(core, _core.Explorer) else PaperNetwork)._of(core, name)
 
     @property
     def tensors(self) -> dict[str, NDArray[np.float32]]:

@@ -72,19 +72,6 @@ TEST_F(ParallelFor, HandsTheFirstExceptionToTheCaller) {
   }
 }
 
-TEST_F(ParallelFor, HandsTheCallersContextToItsTasksAndToNoOthers) {
-  set_threads(4);
-  const int one = 0;
-  const int other = 0;
-  for (const void* const context : std::initializer_list<const void*>{&one, &other, nullptr}) {
-    detail::task_context() = context;
-    std::vector<const void*> seen(100);
-    parallel_for(100, [&](int task) { seen[task] = detail::task_context(); });
-    EXPECT_EQ(seen, std::vector<const void*>(100, context));
-    EXPECT_EQ(detail::task_context(), context);
-  }
-}
-
 TEST_F(ParallelFor, GoesOnAfterAnException) {
   set_threads(2);
   EXPECT_THROW(parallel_for(10, [](int) { throw std::runtime_error("any"); }), std::runtime_error);

@@ -22,7 +22,7 @@ TEST(RollOut, GivesTheSameWalksForAnyNumberOfThreads) {
       set_threads(count);
       const auto policy = make_policy(name, 1);
       std::vector<std::vector<NodeId>> walks;
-      for (const RolloutResult& result : roll_out(world, world.valid_nodes(), {.budget = 25}, *policy)) {
+      for (const RolloutResult& result : roll_out(Episode(world, {.budget = 25}), world.valid_nodes(), *policy)) {
         walks.push_back(result.walk);
       }
       set_threads(1);
@@ -30,6 +30,29 @@ TEST(RollOut, GivesTheSameWalksForAnyNumberOfThreads) {
       EXPECT_EQ(walks, expected) << name;
     }
   }
+}
+
+// The straight way home is dear.
+class DearStraightWay final : public PairCosts {
+ public:
+  double cost(NodeId from, NodeId to) const override { return from + to == 2 && from != to ? 10 : 1; }
+};
+
+// Goes from 0 to 1 to 2 and stops.
+class TwoSteps final : public Policy {
+ public:
+  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) override {
+    const Observation& now = observations[0];
+    actions[0] = now.walk.size() == 3 ? kStop : now.action_to(now.position + 1);
+  }
+};
+
+TEST(PlanBySteps, EndsByTheCheapestWay) {
+  const World world("dear", Graph::complete(3, std::make_shared<DearStraightWay>()), std::vector<bool>(3));
+  TwoSteps policy;
+  const Plan plan = plan_by_steps(world, Task(world, 0, 4, End::at_start()), policy);
+  EXPECT_EQ(plan.walk, (std::vector<NodeId>{0, 1, 2, 1, 0}));
+  EXPECT_EQ(plan.cost, 4);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 
 // A state some first visits into a walk.
 struct Walked {
-  Walked(const World& of, NodeId start, double budget) : world(of), visited(of.node_count()) {
+  Walked(const World& of, NodeId start, double budget) : world(of), task(of, start, budget), visited(of.node_count()) {
     visit(start, 0);
     spendable = budget;
   }
@@ -25,11 +25,10 @@ struct Walked {
     position = node;
     spendable -= cost;
   }
-  ExplorationState state() const {
-    return {.visited = visited, .visited_count = visited.count(), .position = position, .spendable = spendable};
-  }
+  Exploration state() const { return {task, visited, visited.count(), position, spendable}; }
 
   World world;
+  Task task;
   NodeSet visited;
   NodeId position = 0;
   double spendable = 0;
@@ -47,7 +46,7 @@ std::vector<float> scores(const ExplorerParameters& parameters, const ExplorerBa
 void wander(Walked& walked, ExplorerEncoder& encoder, int visits, Rng& rng) {
   for (; visits > 0; --visits) {
     ExplorerBatch batch;
-    const auto found = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
+    const auto found = encoder.append(walked.state(), kExplorerScope, batch);
     if (found.empty()) return;
     const FirstVisit visit = found[rng.below(static_cast<std::uint32_t>(found.size()))];
     walked.visit(visit.node, visit.cost);
@@ -61,7 +60,7 @@ TEST(ExplorerFeatures, AreWorkedOutByHand) {
   ExplorerEncoder encoder;
   const Walked walked(world, 0, 4);
   ExplorerBatch batch;
-  const auto visits = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
+  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
   ASSERT_EQ(visits.size(), 2u);
   EXPECT_EQ(visits[0].node, 1);
   EXPECT_EQ(visits[1].node, 3);
@@ -100,9 +99,9 @@ TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   const World world = grid_world(std::string(200, '.') + "\n");
   ExplorerEncoder encoder;
   ExplorerBatch batch;
-  encoder.append(world, Walked(world, 100, 5).state(), kExplorerScope, batch);
+  encoder.append(Walked(world, 100, 5).state(), kExplorerScope, batch);
   EXPECT_EQ(batch.graphs.graph(0).node_count(), 11);
-  encoder.append(world, Walked(world, 100, 500).state(), kExplorerScope, batch);
+  encoder.append(Walked(world, 100, 500).state(), kExplorerScope, batch);
   EXPECT_EQ(batch.graphs.graph(1).node_count(), kExplorerScope);
   // Each of its two ends has one neighbour of two out of scope.
   double out_of_scope = 0;
@@ -117,7 +116,7 @@ TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   Walked walked(world, 0, 1000);
   for (NodeId node = 1; node < 150; ++node) walked.visit(node, 1);
   walked.visit(0, 149);
-  const auto visits = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
+  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
   ASSERT_EQ(visits.size(), 1u);
   EXPECT_EQ(visits[0].node, 150);
   EXPECT_FALSE(encoder.overlooked());
@@ -127,7 +126,7 @@ TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   std::vector<Edge> rays;
   for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf});
   const World star("star", Graph::from_edges(201, rays), std::vector<bool>(201));
-  EXPECT_EQ(encoder.append(star, Walked(star, 0, 9).state(), kExplorerScope, batch).size(), kExplorerScope - 1u);
+  EXPECT_EQ(encoder.append(Walked(star, 0, 9).state(), kExplorerScope, batch).size(), kExplorerScope - 1u);
   EXPECT_TRUE(encoder.overlooked());
 }
 
@@ -157,8 +156,8 @@ TEST(ExplorerNetwork, DoesNotDependOnHowNodesAreNumbered) {
       same.position = number[walked.position];
       ExplorerBatch batch;
       ExplorerBatch same_batch;
-      const auto found = encoder.append(walked.world, walked.state(), kExplorerScope, batch);
-      const auto same_found = other.append(renumbered, same.state(), kExplorerScope, same_batch);
+      const auto found = encoder.append(walked.state(), kExplorerScope, batch);
+      const auto same_found = other.append(same.state(), kExplorerScope, same_batch);
       const std::vector<float> score = scores(parameters, batch);
       const std::vector<float> same_score = scores(parameters, same_batch);
       ASSERT_EQ(found.size(), same_found.size());
@@ -185,7 +184,7 @@ struct Sample {
     for (std::size_t i = 0; i < worlds.size(); ++i) {
       Walked walked(worlds[i], worlds[i].valid_nodes()[0], worlds[i].valid_count() * worlds[i].open().mean_cost());
       wander(walked, encoder, 5, rng);
-      encoder.append(walked.world, walked.state(), i == 1 ? 12 : kExplorerScope, batch);
+      encoder.append(walked.state(), i == 1 ? 12 : kExplorerScope, batch);
     }
   }
   std::vector<World> worlds;

@@ -12,7 +12,7 @@ namespace {
 using ::testing::ElementsAre;
 
 std::vector<NodeId> walk_of(Planner& planner, const World& world, NodeId start, double budget) {
-  return planner.plan({.view = world, .start = start, .budget = budget}).walk;
+  return planner.plan(Task(world, start, budget)).walk;
 }
 
 TEST(DepthFirst, DescendsInGraphOrderAndBacktracks) {
@@ -64,7 +64,7 @@ TEST(Baselines, StopWhereThereIsNowhereToGo) {
   const World world = grid_world(".#\n#.\n");
   RandomWalkPolicy random_walk(1);
   const NodeId start = 0;
-  EXPECT_THAT(roll_out(world, {&start, 1}, {.budget = 25}, random_walk).front().walk, ElementsAre(0));
+  EXPECT_THAT(roll_out(Episode(world, {.budget = 25}), {&start, 1}, random_walk).front().walk, ElementsAre(0));
   DepthFirstPlanner dfs;
   NearestPlanner nearest;
   EXPECT_THAT(walk_of(dfs, world, 0, 25), ElementsAre(0));
@@ -84,7 +84,7 @@ TEST(RandomPolicies, EndWhereTheyMust) {
     RandomPolicy random(rng.next());
     RandomWalkPolicy random_walk(rng.next());
     for (Policy* policy : {static_cast<Policy*>(&random), static_cast<Policy*>(&random_walk)}) {
-      const std::vector<NodeId> walk = roll_out(world, {&start, 1}, options, *policy).front().walk;
+      const std::vector<NodeId> walk = roll_out(Episode(world, options), {&start, 1}, *policy).front().walk;
       ASSERT_EQ(walk.back(), end);
       ASSERT_LE(walk.size(), 13u);
     }

@@ -45,7 +45,7 @@ TEST(ExactSearch, IsBruteForceOnSmallWorlds) {
     const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
     BruteForce brute{.world = world, .walk = {start}};
     brute.search(budget);
-    const Task from{.view = world, .start = start, .budget = static_cast<double>(budget)};
+    const Task from(world, start, static_cast<double>(budget));
     EXPECT_EQ(exact_walk(from), brute.best);
     EXPECT_EQ(exact_prize(from), brute.best_count);
   }
@@ -53,21 +53,21 @@ TEST(ExactSearch, IsBruteForceOnSmallWorlds) {
 
 TEST(ExactSearch, SolvesAnOpenGridOfTwentyFiveNodes) {
   const World world = grid_world(".....\n.....\n.....\n.....\n.....\n");
-  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 24}), 25);
-  EXPECT_EQ(exact_prize({.view = world, .start = 1, .budget = 24}), 24);  // the lesser colour of the chessboard cannot
-  EXPECT_EQ(exact_prize({.view = world, .start = 1, .budget = 25}), 25);
-  EXPECT_EQ(exact_prize({.view = world, .start = 12, .budget = 1.5}), 2);
+  EXPECT_EQ(exact_prize(Task(world, 0, 24)), 25);
+  EXPECT_EQ(exact_prize(Task(world, 1, 24)), 24);  // the lesser colour of the chessboard cannot
+  EXPECT_EQ(exact_prize(Task(world, 1, 25)), 25);
+  EXPECT_EQ(exact_prize(Task(world, 12, 1.5)), 2);
 }
 
 TEST(ExactSearch, CountsOnlyWhatItCanReach) {
   const World world = grid_world("..#..\n..#..\n");
-  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 25}), 4);
-  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 0}), 1);
+  EXPECT_EQ(exact_prize(Task(world, 0, 25)), 4);
+  EXPECT_EQ(exact_prize(Task(world, 0, 0)), 1);
 }
 
 TEST(ExactSearch, SaysWhenItIsOutOfReach) {
   const World world = grid_world(std::string(65, '.') + "\n");
-  EXPECT_EQ(exact_prize({.view = world, .start = 0, .budget = 100}), std::nullopt);
+  EXPECT_EQ(exact_prize(Task(world, 0, 100)), std::nullopt);
   const World large = grid_world(std::string(5'000, '.') + "\n");
   Episode episode(large, {.budget = 100});
   episode.reset(0);
@@ -81,7 +81,7 @@ TEST(PlannerPolicy, PlansAnewWhereSomeoneElseLedTheWay) {
   const World world = grid_world("....\n");
   PlannerPolicy policy(std::make_unique<ExactPlanner>());
   const NodeId start = 1;
-  EXPECT_THAT(roll_out(world, {&start, 1}, {.budget = 4}, policy).front().walk, ElementsAre(1, 0, 1, 2, 3));
+  EXPECT_THAT(roll_out(Episode(world, {.budget = 4}), {&start, 1}, policy).front().walk, ElementsAre(1, 0, 1, 2, 3));
   Episode episode(world, {.budget = 4});
   follow_walk(episode, std::vector<NodeId>{1, 2});
   const Observation observation = episode.observation();

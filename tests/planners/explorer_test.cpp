@@ -17,7 +17,7 @@ TEST(Explorer, GuidesABeamToMoreThanItFindsAlone) {
   for (int index = 0; index < 30; ++index) {
     const World world = split_world({"loop-maze", 11}, Split::kValidation, index);
     ExplorerScorer scorer(builtin_explorer());
-    const Task task{.view = world, .start = world.valid_nodes()[0], .budget = 1.25 * world.valid_count()};
+    const Task task(world, world.valid_nodes()[0], 1.25 * world.valid_count());
     gain += beam_plan(task, {.width = 16}, {}, &scorer).visited - beam_plan(task, {.width = 16}).visited;
   }
   EXPECT_GE(gain, 30);  // of some 2200 nodes
@@ -30,8 +30,7 @@ TEST(Explorer, VisitsAllWhereTheBudgetIsPlenty) {
     for (int index = 0; index < 5; ++index) {
       const World world = split_world({family, 11}, Split::kValidation, index);
       for (const double budget : {2.0, 20.0}) {
-        const Plan plan =
-            planner.plan({.view = world, .start = world.valid_nodes()[0], .budget = budget * world.valid_count()});
+        const Plan plan = planner.plan(Task(world, world.valid_nodes()[0], budget * world.valid_count()));
         EXPECT_EQ(plan.visited, world.valid_count()) << family << " " << index << " " << budget;
         EXPECT_LE(plan.cost, 2.0 * world.valid_count());
       }
@@ -43,7 +42,7 @@ TEST(Explorer, VisitsAllWhereTheBudgetIsPlenty) {
 TEST(Explorer, GoesBackAsFarAsItMust) {
   const World world = grid_world(std::string(6001, '.') + "\n");
   ExplorerPlanner planner(std::make_shared<ExplorerScorer>(builtin_explorer()));
-  EXPECT_EQ(planner.plan({.view = world, .start = 3000, .budget = 10'000}).visited, 6001);
+  EXPECT_EQ(planner.plan(Task(world, 3000, 10'000)).visited, 6001);
 }
 
 TEST(Explorer, RefusesWeightsThatGiveNoNumbers) {
@@ -52,7 +51,7 @@ TEST(Explorer, RefusesWeightsThatGiveNoNumbers) {
   for (float& value : parameters->values()) value *= 1e38f;
   const World world = grid_world("...\n...\n");
   ExplorerPlanner planner(std::make_shared<ExplorerScorer>(parameters));
-  EXPECT_THROW(planner.plan({.view = world, .start = 0, .budget = 9}), Error);
+  EXPECT_THROW(planner.plan(Task(world, 0, 9)), Error);
 }
 
 // Walks at random through a world whose nodes have prizes or not. Gives how many states had most work out of scope.
@@ -60,36 +59,30 @@ int check_choices(const World& world) {
   int unseen = 0;
   ExplorerScorer scorer(builtin_explorer());
   Rng rng(2);
-  NodeSet visited(world.node_count());
-  ExplorationState state{.visited = visited,
-                         .visited_count = 0,
-                         .position = world.valid_nodes()[0],
-                         .spendable = 1.0 * world.valid_count()};
+  const Task task(world, world.valid_nodes()[0], world.valid_count());
+  NodeSet ground = task.ground();
+  Exploration state(task, ground);
   const double mean_prize = world.total_prize() / world.valid_count();
   ExplorerBatch batch;
   std::vector<float> shortfall;
   int states = 0;
   for (;; ++states) {
-    visited.insert(state.position);
-    ++state.visited_count;
     batch.clear();
-    const auto visits = scorer.encoder().append(world, state, kExplorerScope, batch);
+    const auto visits = scorer.encoder().append(state, kExplorerScope, batch);
     if (visits.empty()) break;
     scorer.shortfalls(batch, shortfall);
     const auto score = [&](std::size_t v) {
       return shortfall[v] - (world.has_prizes() ? world.prize(visits[v].node) / mean_prize : 0) +
              0.5 * batch.unseen[0] * visits[v].cost;
     };
-    const std::size_t choice = scorer.choose(world, batch, visits);
+    const std::size_t choice = scorer.choose(task, batch, visits);
     double least = score(0);
     for (std::size_t v = 1; v < visits.size(); ++v) least = std::min(least, score(v));
     const double indifference = 0.8 * batch.unseen[0] * batch.unseen[0];
     unseen += batch.unseen[0] > 0.5;
     EXPECT_LE(score(choice), least + indifference + 1e-4);
     for (std::size_t v = 0; v < choice; ++v) EXPECT_GT(score(v), least + indifference - 1e-4) << "nearer";
-    const FirstVisit next = visits[rng.below(static_cast<std::uint32_t>(visits.size()))];
-    state.position = next.node;
-    state.spendable -= next.cost;
+    state.make(visits[rng.below(static_cast<std::uint32_t>(visits.size()))], ground);
   }
   EXPECT_GT(states, 10);
   return unseen;

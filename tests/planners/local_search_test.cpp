@@ -23,27 +23,25 @@ World family_world(const char* family, int size, bool weighted = false, bool dir
   return split_world({.family = family, .size = size, .weighted = weighted, .directed = directed}, Split::kTrain, 3);
 }
 
-Task task_of(const World& world) {
-  return {
-      .view = world, .start = world.valid_nodes().front(), .budget = world.valid_count() * world.open().mean_cost()};
+Task task_of(const World& world, const End& end = End::anywhere()) {
+  return Task(world, world.valid_nodes().front(), world.valid_count() * world.open().mean_cost(), end);
 }
 
 TEST(Targets, CostWhatTheCheapestWaysDo) {
   for (const bool directed : {false, true}) {
     const World world = family_world("erdos-renyi", 40, /*weighted=*/true, directed);
-    Task task = task_of(world);
-    task.end = world.valid_nodes().back();
+    const Task task = task_of(world, End::at(world.valid_nodes().back()));
     const Targets targets(task, {});
     ASSERT_TRUE(targets.complete());
     EXPECT_EQ(targets.symmetric(), !directed);
-    const std::vector<double> to_end = costs_to(world.into(), task.end);
+    const std::vector<double> to_end = costs_to(world.into(), task.end());
     for (int to = 0; to < targets.end(); ++to) {
       EXPECT_EQ(targets.target_of(targets.node(to)), to);
       EXPECT_EQ(targets.cost(to, targets.end()), to_end[targets.node(to)]);
       const std::vector<double> costs = costs_to(world.into(), targets.node(to));
       for (int from = 0; from < targets.end(); ++from) {
         const double cost = costs[targets.node(from)];
-        if (cost <= task.budget) {
+        if (cost <= task.budget()) {
           ASSERT_NEAR(targets.cost(from, to), cost, 1e-9);
         }
       }
@@ -61,12 +59,12 @@ TEST(Targets, AreWhatIsWorthSomethingAndCanBeHad) {
   // 0 - 1 - 2 - 3 - 4, and 5 to which no edge leads.
   const std::vector<Edge> edges = {{0, 1}, {1, 2}, {2, 3}, {3, 4}};
   const World world("path", Graph::from_edges(6, edges), std::vector<bool>(6), {}, {1, 0, 2, 3, 4, 5});
-  const Targets open({.view = world, .start = 0, .budget = 3}, {});
+  const Targets open(Task(world, 0, 3), {});
   EXPECT_EQ(open.end(), 3);  // 0, 2 and 3
   EXPECT_EQ(open.total_prize(), 6);
-  const Targets there_and_back({.view = world, .start = 0, .budget = 4, .end = 0}, {});
+  const Targets there_and_back(Task(world, 0, 4, End::at(0)), {});
   EXPECT_EQ(there_and_back.end(), 2);  // 0 and 2
-  const Targets to_four({.view = world, .start = 0, .budget = 4, .end = 4}, {});
+  const Targets to_four(Task(world, 0, 4, End::at(4)), {});
   EXPECT_EQ(to_four.end(), 3);
   EXPECT_EQ(to_four.prize(to_four.end()), 4);
 }
@@ -75,25 +73,20 @@ TEST(Targets, AreWhatIsWorthSomethingAndCanBeHad) {
 TEST(Targets, AreLeftOverAfterAFirstStep) {
   for (const bool directed : {false, true}) {
     const World world = family_world("erdos-renyi", 40, /*weighted=*/true, directed);
-    Task task = task_of(world);
-    task.end = world.valid_nodes().back();
-    task.budget = 1000;
+    const Task task(world, world.valid_nodes().front(), 1000, End::at(world.valid_nodes().back()));
     const Targets all(task, {});
     NodeSet visited(world.node_count());
-    visited.insert(task.start);
+    visited.insert(task.start());
     for (const int first : {1, all.end() / 2, all.end() - 1}) {
-      Task rest = task;
-      rest.start = all.node(first);
-      rest.visited = visited;
-      rest.visited.insert(rest.start);
+      const Task rest = task.rest(all.node(first), 1000, visited);
       // Without what edges of one way leave behind.
       const Targets expected(rest, {});
       const Targets targets = all.after(first);
-      EXPECT_EQ(targets.node(0), rest.start);
-      EXPECT_EQ(targets.target_of(task.start), -1);
+      EXPECT_EQ(targets.node(0), rest.start());
+      EXPECT_EQ(targets.target_of(task.start()), -1);
       EXPECT_EQ(targets.end(), all.end() - 1);
       EXPECT_EQ(targets.prize(0), 0);
-      EXPECT_NEAR(targets.total_prize(), all.total_prize() - (task.visited.empty() ? 2 : 1), 1e-9);
+      EXPECT_NEAR(targets.total_prize(), all.total_prize() - 2, 1e-9);
       const auto there = [&](int target) {
         return target == expected.end() ? targets.end() : targets.target_of(expected.node(target));
       };
@@ -226,11 +219,11 @@ TEST(Annealing, RecombinesRoutes) {
   const std::vector<int> other = order_of(make_planner("dfs", 1)->plan(task));
   int mixed = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    Annealing annealing(targets, task.budget, seed);
+    Annealing annealing(targets, task.budget(), seed);
     annealing.start(one, std::vector<double>(one.size() + 1, kNoLimit));
     annealing.recombine(other);
     const std::vector<int>& child = annealing.best();
-    EXPECT_LE(annealing.best_cost(), task.budget * (1 + 1e-9));
+    EXPECT_LE(annealing.best_cost(), task.budget() * (1 + 1e-9));
     EXPECT_EQ(annealing.best_prize(), static_cast<double>(child.size() + 1));  // the start's
     bool from_one = false;
     bool from_other = false;
@@ -248,15 +241,15 @@ TEST(LocalSearch, IsNeverWorseThanWhatItBeginsWith) {
   for (const bool directed : {false, true}) {
     for (const bool weighted : {false, true}) {
       const World world = family_world("erdos-renyi", 60, weighted, directed);
-      Task task = task_of(world);
-      for (const NodeId end : {kNoNode, task.start}) {
-        task.end = end;
+      for (const End& asked : {End::anywhere(), End::at_start()}) {
+        const Task task = task_of(world, asked);
+        const NodeId end = task.end();
         const Plan found = make_planner("search:2000")->plan(task);
         for (const char* const name : {"nearest", "dfs", "beam", "explorer"}) {
           EXPECT_FALSE(better(make_planner(name)->plan(task), found)) << name;
         }
         EXPECT_GE(found.bound, found.prize);
-        Episode episode(world, {.budget = task.budget, .action_space = ActionSpace::kNeighbours});
+        Episode episode(world, {.budget = task.budget(), .action_space = ActionSpace::kNeighbours});
         follow_walk(episode, found.walk);
         EXPECT_EQ(episode.visited_count(), found.visited);
         EXPECT_TRUE(end == kNoNode || found.walk.back() == end);
@@ -282,7 +275,7 @@ TEST(LocalSearch, WorksWithoutATable) {
   for (const World& world : {grid, streets}) {
     const Task task = task_of(world);
     const Plan found = make_planner("search:20000")->plan(task);
-    Episode episode(world, {.budget = task.budget, .action_space = ActionSpace::kNeighbours});
+    Episode episode(world, {.budget = task.budget(), .action_space = ActionSpace::kNeighbours});
     follow_walk(episode, found.walk);
     EXPECT_EQ(episode.visited_count(), found.visited);
     EXPECT_TRUE(better(found, make_planner("nearest")->plan(task)));
@@ -312,12 +305,12 @@ TEST(LocalSearch, EndsWhereAllIsVisited) {
 
 TEST(LocalSearch, HasAWalkWhateverTheTime) {
   const World world = family_world("obstacles", 61);
-  Task task = task_of(world);
-  for (const NodeId end : {kNoNode, task.start}) {
-    task.end = end;
+  for (const End& asked : {End::anywhere(), End::at_start()}) {
+    const Task task = task_of(world, asked);
+    const NodeId end = task.end();
     for (const double seconds : {0.0, 0.001, 0.01, 0.1}) {
-      const Plan plan = make_planner("search")->plan(task, deadline_after(std::chrono::duration<double>(seconds)));
-      Episode episode(world, {.budget = task.budget, .action_space = ActionSpace::kNeighbours});
+      const Plan plan = make_planner("search")->plan(task, Clock(seconds));
+      Episode episode(world, {.budget = task.budget(), .action_space = ActionSpace::kNeighbours});
       follow_walk(episode, plan.walk);
       EXPECT_TRUE(end == kNoNode || plan.walk.back() == end);
     }

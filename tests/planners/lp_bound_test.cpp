@@ -2,6 +2,7 @@
 #include "graphdrl/planners/lp_bound.h"
 
 #include <gtest/gtest.h>
+#include <optional>
 
 #include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
@@ -13,8 +14,9 @@
 namespace graphdrl {
 namespace {
 
-// Sparse and dense, directed or not, with and without costs, prizes, blocked nodes, an end and nodes visited before.
-Task random_task(Rng& rng) {
+// Sparse and dense, directed or not, with and without costs, prizes, blocked nodes, an end, nodes visited before and
+// nodes that others have claimed. Empty where the end is out of reach.
+std::optional<Task> random_task(Rng& rng) {
   const auto nodes = static_cast<NodeId>(1 + rng.below(10));
   const auto any_node = [&] { return static_cast<NodeId>(rng.below(static_cast<std::uint32_t>(nodes))); };
   const bool directed = rng.below(2) == 0;
@@ -36,27 +38,27 @@ Task random_task(Rng& rng) {
   World world("random", Graph::from_edges(nodes, edges, directed ? EdgeKind::kDirected : EdgeKind::kUndirected),
               blocked, {}, prizes);
   const NodeId start = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
-  Task task{.view = world, .start = start, .budget = (weights == 2 ? 0.25 : 0.5) * rng.below(28)};
-  const std::uint32_t end = rng.below(4);
-  if (end == 0) task.end = start;
-  if (end == 1) task.end = world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
-  if (rng.below(4) == 0) {
-    task.visited = NodeSet(nodes);
-    task.visited.insert(start);
+  const double budget = (weights == 2 ? 0.25 : 0.5) * rng.below(28);
+  const std::uint32_t end_kind = rng.below(4);
+  End end = End::anywhere();
+  if (end_kind == 0) end = End::at_start();
+  if (end_kind == 1) end = End::at(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
+  const auto draw_set = [&](bool with_start) {
+    NodeSet set(nodes);
+    if (with_start) set.insert(start);
     for (const NodeId node : world.valid_nodes()) {
-      if (rng.below(3) == 0) task.visited.insert(node);
+      if (rng.below(3) == 0) set.insert(node);
     }
-  }
-  return task;
-}
-
-bool has_walk(const Task& task) {
+    return set;
+  };
   try {
-    check(task);
+    Task task(world, start, budget, end);
+    if (rng.below(4) == 0) task = task.rest(start, budget, draw_set(true));
+    if (rng.below(4) == 0) task = task.without(draw_set(false));
+    return task;
   } catch (const Error&) {
-    return false;
+    return std::nullopt;
   }
-  return true;
 }
 
 TEST(LpBound, IsTheOptimumOnRandomWorlds) {
@@ -67,8 +69,9 @@ TEST(LpBound, IsTheOptimumOnRandomWorlds) {
   int tight_before = 0;
   for (int i = 0; i < 10'000; ++i) {
     SCOPED_TRACE(i);
-    const Task task = random_task(rng);
-    if (!has_walk(task)) continue;
+    const std::optional<Task> drawn = random_task(rng);
+    if (!drawn) continue;
+    const Task& task = *drawn;
     ++compared;
     const auto walk = exact_walk(task);
     ASSERT_TRUE(walk);
@@ -88,7 +91,7 @@ TEST(LpBound, IsTheOptimumOnRandomWorlds) {
     const Plan found = plan_of_walk(task, lp->walk());
     ASSERT_LE(found.cost, task.limit());
     ASSERT_NEAR(found.prize, optimum, 1e-8);
-    ASSERT_TRUE(task.ends_anywhere() || found.walk.back() == task.end);
+    ASSERT_TRUE(task.ends_anywhere() || found.walk.back() == task.end());
     Plan plan = NearestPlanner().plan(task);
     improve(*lp, task, plan);
     ASSERT_TRUE(plan.optimal);
@@ -113,7 +116,7 @@ World star(const std::vector<double>& prizes_of_leaves) {
 TEST(LpBound, TellsLargePrizesApart) {
   if (!has_lp_bound()) GTEST_SKIP() << "built without CLP";
   const World world = star({9e8, 9e8, 9e8, 10, 1});
-  const auto lp = make_lp_bound({.view = world, .start = 0, .budget = 7}, kNoLimit);  // four leaves of five
+  const auto lp = make_lp_bound(Task(world, 0, 7), kNoLimit);  // four leaves of five
   lp->branch(2.7e9 + 1, {});
   EXPECT_EQ(lp->bound(), 2.7e9 + 10);
   EXPECT_FALSE(lp->walk().empty());
@@ -122,7 +125,7 @@ TEST(LpBound, TellsLargePrizesApart) {
 TEST(LpBound, IsProvedWhereTheBudgetIsJustBelowAStep) {
   if (!has_lp_bound()) GTEST_SKIP() << "built without CLP";
   const World world = star({1, 1, 1, 1});
-  const auto lp = make_lp_bound({.view = world, .start = 0, .budget = 4.9999999}, kNoLimit);
+  const auto lp = make_lp_bound(Task(world, 0, 4.9999999), kNoLimit);
   lp->branch(0, {});
   EXPECT_EQ(lp->bound(), 2);
 }
@@ -130,7 +133,7 @@ TEST(LpBound, IsProvedWhereTheBudgetIsJustBelowAStep) {
 TEST(LpBound, ReachesTheSameInSlicesOfWork) {
   if (!has_lp_bound()) GTEST_SKIP() << "built without CLP";
   const World world = split_world({.family = "braided-maze", .size = 11}, Split::kTrain, 4);
-  const Task task{.view = world, .start = world.valid_nodes().front(), .budget = 0.6 * world.valid_count()};
+  const Task task(world, world.valid_nodes().front(), 0.6 * world.valid_count());
   const auto whole = make_lp_bound(task, kNoLimit);
   whole->branch(0, {});
   const auto sliced = make_lp_bound(task, kNoLimit);

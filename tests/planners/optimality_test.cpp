@@ -25,7 +25,7 @@ struct Case {
   NodeId start;
   double budget;
 
-  Task task() const { return {.view = world, .start = start, .budget = budget}; }
+  Task task() const { return Task(world, start, budget); }
 };
 
 // Sparse and dense, undirected and directed, with and without costs and blocked nodes, connected or not.
@@ -118,7 +118,7 @@ TEST(Optimality, PlansOptimaAndBoundsHoldOnRandomWorlds) {
          {"random", "random-walk", "dfs", "nearest", "beam:2", "explorer", "guided:2", "exact"}) {
       const auto policy = make_policy(name, 1);
       const EpisodeOptions options{.budget = c.budget, .action_space = ActionSpace::kNeighbours};
-      const RolloutResult result = roll_out(c.world, std::span(&c.start, 1), options, *policy).front();
+      const RolloutResult result = roll_out(Episode(c.world, options), std::span(&c.start, 1), *policy).front();
       ASSERT_LE(follow(result.walk).visited, optimum.visited) << name;
     }
   }
@@ -194,22 +194,20 @@ TEST(Optimality, HoldsForEndsAndPrizes) {
     const NodeId node = nodes[rng.below(static_cast<std::uint32_t>(nodes.size()))];
     const std::uint32_t kind = rng.below(3);
     const NodeId end = kind == 0 ? kNoNode : kind == 1 ? c.start : node;
-    Task task = c.task();
-    task.end = end;
+    const End asked = end == kNoNode ? End::anywhere() : End::at(end);
     const auto optimum = brute_force_prize(c, end);
     if (!optimum) {
-      EXPECT_THROW(max_prize(task), Error);
+      EXPECT_THROW(Task(c.world, c.start, c.budget, asked), Error);
       continue;
     }
+    const Task task(c.world, c.start, c.budget, asked);
     ++compared;
     ASSERT_GE(max_prize(task), optimum->prize - 1e-9);
     const Plan plan = ExactPlanner().plan(task);
     ASSERT_TRUE(plan.optimal);
     ASSERT_NEAR(plan.prize, optimum->prize, 1e-9);
     ASSERT_NEAR(plan.cost, optimum->cost, 1e-9);
-    Episode episode(c.world, {.budget = c.budget,
-                              .end = end == kNoNode ? End::anywhere() : End::at(end),
-                              .action_space = ActionSpace::kNeighbours});
+    Episode episode(c.world, task, {.action_space = ActionSpace::kNeighbours});
     follow_walk(episode, plan.walk);
     ASSERT_NEAR(episode.prize(), optimum->prize, 1e-9);
     ASSERT_TRUE(end == kNoNode || episode.position() == end);
@@ -242,8 +240,8 @@ TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
     for (NodeId leaf = 1; leaf <= leaves; ++leaf) rays.push_back({0, leaf});
     return World("star", Graph::from_edges(leaves + 1, rays), std::vector<bool>(leaves + 1));
   };
-  const Task small{.view = star(60), .start = 0, .budget = 1};
-  const Task large{.view = star(200), .start = 0, .budget = 1};
+  const Task small(star(60), 0, 1);
+  const Task large(star(200), 0, 1);
   ExplorerScorer scorer(builtin_explorer());
   EXPECT_FALSE(beam_plan(large, {.width = 1000}, {}, &scorer).optimal);
   EXPECT_FALSE(ExplorerPlanner(std::make_shared<ExplorerScorer>(builtin_explorer())).plan(large).optimal);
@@ -254,7 +252,7 @@ TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
   std::vector<Edge> rays;
   for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf, 1.0 * leaf});
   const World longer("longer", Graph::from_edges(201, rays, EdgeKind::kDirected), std::vector<bool>(201));
-  const Task far{.view = longer, .start = 0, .budget = 200};
+  const Task far(longer, 0, 200);
   EXPECT_FALSE(beam_plan(far, {.width = 1000}).optimal);
   EXPECT_TRUE(beam_plan(far, {.width = 1000, .branching = 200}).optimal);
 }
@@ -265,7 +263,7 @@ TEST(Beam, LooksAtFewTies) {
   std::vector<Edge> rays;
   for (NodeId leaf = 1; leaf <= kLeaves; ++leaf) rays.push_back({0, leaf});
   const World star("star", Graph::from_edges(kLeaves + 1, rays), std::vector<bool>(kLeaves + 1));
-  EXPECT_EQ(beam_plan({.view = star, .start = 0, .budget = 40}, {}).visited, 21);
+  EXPECT_EQ(beam_plan(Task(star, 0, 40), {}).visited, 21);
 }
 
 TEST(Beam, TakesTheLongWayPastManyLeavesWhereTheBudgetIsShort) {
@@ -281,9 +279,43 @@ TEST(Beam, TakesTheLongWayPastManyLeavesWhereTheBudgetIsShort) {
         edges.push_back({on_path && !first ? i - 1 : 0, i});
       }
       const World world("hub", Graph::from_edges(kNodes, edges), std::vector<bool>(kNodes));
-      const Plan plan = beam_plan({.view = world, .start = 0, .budget = 40}, {});
+      const Plan plan = beam_plan(Task(world, 0, 40), {});
       EXPECT_EQ(plan.visited, 41) << leaves << path_first;
     }
+  }
+}
+
+NodeSet random_set(const World& world, Rng& rng) {
+  NodeSet set(world.node_count());
+  for (const NodeId node : world.valid_nodes()) {
+    if (rng.below(3) == 0) set.insert(node);
+  }
+  return set;
+}
+
+// As in a world where they have no prize.
+TEST(Optimality, LeavesOutWhatOthersHaveClaimed) {
+  Rng rng(14);
+  const auto search = make_planner("search:200");
+  for (int i = 0; i < 500; ++i) {
+    SCOPED_TRACE(i);
+    const Case c = random_case(rng);
+    const NodeSet claimed = random_set(c.world, rng);
+    std::vector<double> prizes(c.world.node_count(), 1);
+    for (NodeId node = 0; node < c.world.node_count(); ++node) prizes[node] = claimed.contains(node) ? 0 : 1;
+    const Task task = c.task().without(claimed);
+    const Task other(World("other", c.world.graph(), c.world.blocked(), {}, prizes), c.start, c.budget);
+    const Plan exact = ExactPlanner().plan(other);
+    ASSERT_EQ(ExactPlanner().plan(task).walk, exact.walk);
+    ASSERT_GE(max_prize(task), exact.prize);
+    ASSERT_EQ(NearestPlanner().plan(task).walk, NearestPlanner().plan(other).walk);
+    const Plan complete = beam_plan(task, {.width = 1000});
+    ASSERT_TRUE(complete.optimal);
+    ASSERT_NEAR(complete.prize, exact.prize, 1e-9);
+    const Plan found = search->plan(task);
+    ASSERT_NEAR(found.prize, plan_of_walk(other, found.walk).prize, 1e-9);
+    ASSERT_LE(found.prize, exact.prize + 1e-9);
+    ASSERT_GE(found.bound, exact.prize - 1e-9);
   }
 }
 
@@ -291,12 +323,7 @@ TEST(Optimality, PlansGoOnFromWhereSomeoneElseLed) {
   Rng rng(12);
   for (int i = 0; i < 500; ++i) {
     const Case c = random_case(rng);
-    Task task = c.task();
-    task.visited = NodeSet(c.world.node_count());
-    task.visited.insert(c.start);
-    for (const NodeId node : c.world.valid_nodes()) {
-      if (rng.below(3) == 0) task.visited.insert(node);
-    }
+    const Task task = c.task().rest(c.start, c.budget, random_set(c.world, rng));
     const auto walk = exact_walk(task);
     ASSERT_TRUE(walk);
     const Plan exact = plan_of_walk(task, *walk);
@@ -312,7 +339,7 @@ TEST(Bound, IsWorkedOutByHand) {
   const std::vector<Edge> star = {{0, 1}, {0, 2}, {0, 3}, {0, 4}};
   const World world("star", Graph::from_edges(5, star), std::vector<bool>(5));
   const auto bound = [](const World& of, NodeId start, double budget, NodeId end = kNoNode) {
-    return max_prize({.view = of, .start = start, .budget = budget, .end = end});
+    return max_prize(Task(of, start, budget, end == kNoNode ? End::anywhere() : End::at(end)));
   };
   EXPECT_EQ(bound(world, 0, 0), 1);
   EXPECT_EQ(bound(world, 0, 3), 3);
@@ -346,8 +373,8 @@ TEST(Bound, IsWorkedOutByHand) {
 TEST(Bound, TakesItsTimeOnNoCorridor) {
   constexpr NodeId kNodes = 200'000;
   const World corridor = grid_world(std::string(kNodes, '.') + "\n");
-  EXPECT_EQ(max_prize({.view = corridor, .start = 0, .budget = 1000}), 1001);
-  const double both_ends = max_prize({.view = corridor, .start = kNodes / 2, .budget = 1.0 * kNodes});
+  EXPECT_EQ(max_prize(Task(corridor, 0, 1000)), 1001);
+  const double both_ends = max_prize(Task(corridor, kNodes / 2, 1.0 * kNodes));
   EXPECT_LE(both_ends, 0.76 * kNodes);
 }
 
@@ -367,7 +394,7 @@ TEST(SpendingLimit, IsOneRuleForEpisodesSearchesAndBounds) {
        {Expected{path(999, 1.0000005), 1000, 3}, Expected{path(999, 1.0000005), 999.9, 2},
         Expected{path(1e-10, 1e-10), 0, 1}, Expected{path(1e-10, 1e-10), 1e-10, 2},
         Expected{path(1, 1'000'000'000), 1'000'000'000, 2}, Expected{path(1, 999'999'999), 1'000'000'000, 3}}) {
-    const Task task{.view = world, .start = 0, .budget = budget};
+    const Task task(world, 0, budget);
     EXPECT_EQ(ExactPlanner().plan(task).visited, visited);
     EXPECT_EQ(beam_plan(task, {}).visited, visited);
     EXPECT_EQ(NearestPlanner().plan(task).visited, visited);
@@ -379,15 +406,15 @@ TEST(SpendingLimit, IsOneRuleForEpisodesSearchesAndBounds) {
   }
 }
 
-Deadline ample() {
-  return std::chrono::steady_clock::now() + std::chrono::hours(1);
+Clock ample() {
+  return Clock(3600);
 }
 
 TEST(Beam, WithTimeWidensUntilNothingIsDropped) {
   const World world = grid_world("..#..\n.....\n#.#.#\n.....\n..#..\n");
   int improved = 0;
   for (const NodeId node : world.valid_nodes()) {
-    const Task task{.view = world, .start = node, .budget = 20};
+    const Task task(world, node, 20);
     const double optimum = *exact_prize(task);
     BeamPlanner beam({.width = 1, .branching = 1});
     improved += beam.plan(task).prize < optimum;
@@ -404,11 +431,11 @@ TEST(Beam, WithTimeWidensUntilNothingIsDropped) {
 // Once the time is up, whatever they are at, planners give a walk that can be walked.
 TEST(Planners, GiveWhatTheyHaveWhenTheTimeIsUp) {
   const World world = split_world({"obstacles", 60}, Split::kValidation, 0);
-  const Task task{.view = world, .start = world.valid_nodes()[0], .budget = 1.0 * world.valid_count()};
+  const Task task(world, world.valid_nodes()[0], 1.0 * world.valid_count());
   for (const char* const name : {"dfs", "nearest", "beam", "guided", "explorer", "exact"}) {
     const auto planner = make_planner(name);
-    const Plan plan = planner->plan(task, std::chrono::steady_clock::now());
-    Episode episode(world, {.budget = task.budget});
+    const Plan plan = planner->plan(task, Clock(0));
+    Episode episode(world, {.budget = task.budget()});
     follow_walk(episode, plan.walk);
     EXPECT_EQ(episode.visited_count(), plan.visited) << name;
     EXPECT_FALSE(plan.optimal) << name;
@@ -421,7 +448,7 @@ TEST(Baselines, FollowOneWayStreetsAndCosts) {
   const std::vector<Edge> edges = {{0, 1, 1}, {1, 2, 1}, {2, 0, 1}, {1, 3, 5}, {3, 1, 1}};
   const World world("streets", Graph::from_edges(4, edges, EdgeKind::kDirected), std::vector<bool>(4));
   const auto walk_of = [&](const char* name, double budget) {
-    return make_planner(name)->plan({.view = world, .start = 0, .budget = budget}).walk;
+    return make_planner(name)->plan(Task(world, 0, budget)).walk;
   };
   EXPECT_EQ(walk_of("dfs", 20), (std::vector<NodeId>{0, 1, 2, 0, 1, 3}));
   EXPECT_EQ(walk_of("nearest", 20), (std::vector<NodeId>{0, 1, 2, 0, 1, 3}));

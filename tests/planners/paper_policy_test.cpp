@@ -24,7 +24,7 @@ TEST(PaperPolicy, TakesTheDirectionOfTheHighestQValueEvenWhereItIsBlocked) {
   PaperPolicy policy(std::move(parameters));
   const World world = grid_world("..\n..\n");
   const std::vector<NodeId> starts = {0, 3};
-  const auto results = roll_out(world, starts, {.budget = 2}, policy);
+  const auto results = roll_out(Episode(world, {.budget = 2}), starts, policy);
   EXPECT_EQ(results[0].walk, (std::vector<NodeId>{0, 0, 0}));
   EXPECT_EQ(results[1].walk, (std::vector<NodeId>{3, 1, 1}));
   EXPECT_DOUBLE_EQ(results[1].coverage, 0.5);
@@ -63,11 +63,11 @@ TEST(Registry, MakesPoliciesByNameAndFile) {
   write_policy_file(folder / "mine.safetensors", PaperParameters(rng));
   for (const char* name : {"random", "random-walk", "dfs", "nearest", "exact", "search", "search:7"}) {
     EXPECT_NE(make_policy(name, 1), nullptr);
-    EXPECT_EQ(policy_label(name), name);
+    EXPECT_EQ(parse_policy(name).label, name);
   }
   const std::string file = (folder / "mine.safetensors").string();
   EXPECT_NE(make_policy(file, 1), nullptr);
-  EXPECT_EQ(policy_label(file), "mine");
+  EXPECT_EQ(parse_policy(file).label, "mine");
   EXPECT_THAT(error_of([] { make_policy("best", 1); }),
               HasSubstr("expected search[:ITERATIONS], beam[:W], guided[:W[:FILE]], dfs, exact, explorer, nearest, "
                         "random, random-walk or a "

@@ -23,10 +23,9 @@ World labelled_world() {
 }
 
 PlanReport report_of(const World& world, std::vector<NodeId> walk) {
-  const Task task{.view = world, .start = walk.front(), .budget = 10};
+  const Task task(world, walk.front(), 10);
   PlanReport report{.world = world, .task = task, .policy = "search", .plan = plan_of_walk(task, std::move(walk))};
   report.plan.bound = 3;
-  report.max_visited = 3;
   return report;
 }
 

@@ -18,7 +18,7 @@ nlohmann::json data_of(const ReportPage& page) {
 }
 
 PlanReport report_on(const World& world, std::vector<NodeId> walk, double budget) {
-  const Task task{.view = world, .start = walk.front(), .budget = budget};
+  const Task task(world, walk.front(), budget);
   return {.world = world, .task = task, .policy = "mine", .plan = plan_of_walk(task, std::move(walk))};
 }
 

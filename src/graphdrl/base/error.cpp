@@ -36,4 +36,8 @@ std::string in_quotes(std::string_view text, std::size_t max_length) {
   return fmt::format("'{}{}'", escaped(text.substr(0, max_length)), cut ? "…" : "");
 }
 
+std::string decimal(double value) {
+  return fmt::format("{:.15g}", value);
+}
+
 }  // namespace graphdrl

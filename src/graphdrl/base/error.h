@@ -27,4 +27,7 @@ std::string escaped(std::string_view text);
 // `text` in quotes, unprintable bytes escaped, cut to `max_length` characters.
 std::string in_quotes(std::string_view text, std::size_t max_length = 60);
 
+// A number with all digits that decide: 8888887, 0.3. At most 15, so that sums of decimals look like one.
+std::string decimal(double value);
+
 }  // namespace graphdrl

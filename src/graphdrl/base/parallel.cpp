@@ -10,7 +10,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <utility>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -30,7 +29,6 @@ struct Pool {
 int thread_count = 1;
 std::optional<Pool> pool;  // where thread_count > 1
 thread_local bool within_task = false;
-thread_local const void* context = nullptr;
 
 // ThreadSanitizer does not see how libtbb.so orders a loop's begin before its tasks and these before its end. Each
 // order has a mark of its own: with one for both, the end of a task would order the next one behind it and hide their
@@ -58,7 +56,6 @@ class Loop {
   void run(int i) {
     begin_.after();
     within_task = true;
-    const void* const before = std::exchange(context, context_);
     try {
       run_(task_, i);
     } catch (...) {
@@ -68,7 +65,6 @@ class Loop {
         failed_ = i;
       }
     }
-    context = before;
     within_task = false;
     end_.before();
   }
@@ -92,7 +88,6 @@ class Loop {
 
   void (*run_)(const void*, int);
   const void* task_;
-  const void* context_ = context;
   OrderMark begin_;
   OrderMark end_;
   std::mutex mutex_;
@@ -120,10 +115,6 @@ namespace detail {
 
 bool in_task() {
   return within_task;
-}
-
-const void*& task_context() {
-  return context;
 }
 
 void run_on_pool(int count, void (*run)(const void* task, int i), const void* task, Schedule schedule) {

@@ -19,8 +19,6 @@ namespace detail {
 
 // Whether the caller is a task of parallel_for.
 bool in_task();
-// What the caller's thread hands to the tasks of its parallel_for, whatever threads they run on; null at first.
-const void*& task_context();
 // Calls run(task, 0) … run(task, count - 1) on threads() threads.
 void run_on_pool(int count, void (*run)(const void* task, int i), const void* task, Schedule schedule);
 

@@ -11,7 +11,6 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/planners/bound.h"
@@ -69,43 +68,27 @@ NodeId checked(const World& world, std::int32_t node, const char* role) {
                .where = world.name()});
 }
 
-double budget_of(const World& world, const graphdrl_task& task) {
+Asked asked_of(const World& world, const graphdrl_task& task) {
+  if (task.size < sizeof(graphdrl_task)) {
+    throw Error({.what = "bad size of a task", .expected = "graphdrl_task_init()"});
+  }
+  Asked asked;
   if (std::isnan(task.relative)) throw Error({.what = "the budget is not a number", .where = "relative"});
   // Not std::to_string(), which writes what the caller's locale says.
-  if (task.relative > 0) return Budget::parse(fmt::format("{}x", task.relative)).cost_in(world);
-  if (task.budget >= 0) return checked_budget(world, task.budget);
-  if (world.given().budget && !std::isnan(task.budget)) return checked_budget(world, *world.given().budget);
-  throw Error({.what = "no budget is given", .where = world.name()});
-}
-
-Task task_of(const World& world, const graphdrl_task& task) {
-  if (task.size < sizeof(graphdrl_task))
-    throw Error({.what = "bad size of a task", .expected = "graphdrl_task_init()"});
-  const GivenTask& given = world.given();
-  NodeId start = given.start == kNoNode ? world.valid_nodes().front() : given.start;
-  if (task.start != GRAPHDRL_GIVEN) start = checked(world, task.start, "start");
-  NodeId end = kNoNode;
-  switch (task.end) {
-    case GRAPHDRL_GIVEN:
-      end = given.end;
-      break;
-    case GRAPHDRL_ANYWHERE:
-      break;
-    case GRAPHDRL_AT_START:
-      end = start;
-      break;
-    default:
-      end = checked(world, task.end, "end");
+  if (task.relative > 0) {
+    asked.budget = Budget::parse(fmt::format("{}x", task.relative));
+  } else if (!(task.budget < 0)) {
+    asked.budget = Budget(task.budget);
   }
-  return {.view = world, .start = start, .budget = budget_of(world, task), .end = end};
+  if (task.start != GRAPHDRL_GIVEN) asked.start = checked(world, task.start, "start");
+  if (task.end == GRAPHDRL_ANYWHERE) asked.end = End::anywhere();
+  if (task.end == GRAPHDRL_AT_START) asked.end = End::at_start();
+  if (task.end != GRAPHDRL_GIVEN && !asked.end) asked.end = End::at(checked(world, task.end, "end"));
+  return asked;
 }
 
-// Reports progress to the caller until the caller stops the planning.
-Report progress_of(const graphdrl_task& task, std::atomic<bool>& stopped) {
-  if (task.progress == nullptr) return {};
-  return [&](const PlanProgress& news) {
-    if (!stopped && task.progress(news.visited, news.bound, task.progress_data) != 0) stopped = true;
-  };
+std::optional<double> time_limit_of(const graphdrl_task& task) {
+  return task.time_limit_s < 0 ? std::nullopt : std::optional(task.time_limit_s);
 }
 
 }  // namespace
@@ -238,13 +221,16 @@ graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* 
     *result = nullptr;
     require(world, "the world");
     require(task, "the task");
-    const Task asked = task_of(world->world, *task);
-    check(asked);
-    PlanRequest request{.policy = task->policy != nullptr ? task->policy : "search", .seed = task->seed};
-    if (!(task->time_limit_s < 0)) request.time_limit_s = task->time_limit_s;
+    const Task asked(world->world, asked_of(world->world, *task));
+    const PlanRequest request{.policy = task->policy != nullptr ? task->policy : "search", .seed = task->seed};
+    // Tells the caller how far it is, until the caller stops it.
     std::atomic<bool> stopped = false;
-    const StopScope scope(stopped);
-    *result = new graphdrl_result(make_plan(world->world, asked, request, progress_of(*task, stopped)));
+    const ProgressListener listener = [&](const Progress& news) {
+      if (task->progress == nullptr || stopped) return;
+      stopped = task->progress(news.visited, news.bound, task->progress_data) != 0;
+    };
+    *result =
+        new graphdrl_result(make_plan(world->world, asked, request, Clock(time_limit_of(*task), &stopped, &listener)));
   });
 }
 
@@ -253,11 +239,7 @@ graphdrl_status graphdrl_upper_bound(const graphdrl_world* world, const graphdrl
     require(bound, "the place for a bound");
     require(world, "the world");
     require(task, "the task");
-    const double seconds = task->time_limit_s;
-    if (!(seconds <= 1e6)) throw Error({.what = "bad time limit", .expected = "at most 1000000 seconds"});
-    const Task asked = task_of(world->world, *task);
-    check(asked);
-    *bound = max_prize(asked, deadline_after(seconds < 0 ? std::nullopt : TimeLimit(seconds)));
+    *bound = max_prize(Task(world->world, asked_of(world->world, *task)), Clock(time_limit_of(*task)));
   });
 }
 
@@ -279,7 +261,7 @@ double graphdrl_result_cost(const graphdrl_result* result) {
 }
 
 double graphdrl_result_budget(const graphdrl_result* result) {
-  return result != nullptr ? result->report.task.budget : 0;
+  return result != nullptr ? result->report.task.budget() : 0;
 }
 
 double graphdrl_result_bound(const graphdrl_result* result) {

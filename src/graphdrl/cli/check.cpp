@@ -5,15 +5,12 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/plan_files.h"
 
 namespace graphdrl {
 namespace {
-
-constexpr double kSumRounding = 1e-9;  // of sums of prizes
 
 struct CheckOptions {
   std::string map;
@@ -26,19 +23,16 @@ struct CheckOptions {
 };
 
 PlanReport check(const World& world, const CheckOptions& options) {
-  PlanReport report = read_plan(world, options.walk);
-  Task& task = report.task;
-  const GivenTask& given = world.given();
   // Options first, then what the map says, then what the walk's file says.
-  if (given.budget) task.budget = *given.budget;
-  if (!options.budget.empty()) task.budget = Budget::parse(options.budget).cost_in(world);
-  if (given.end != kNoNode) task.end = given.end;
-  if (!options.end.empty()) task.end = parse_end(world, options.end).of(task.start);
+  Asked asked = asked_of(world, {.budget = options.budget, .end = options.end});
+  const GivenTask& given = world.given();
+  if (!asked.budget && given.budget) asked.budget = Budget(*given.budget);
+  if (!asked.end && given.end != kNoNode) asked.end = End::at(given.end);
+  PlanReport report = read_plan(world, options.walk, asked);
   check_walk(report, options.walk);
-  report.plan.bound = max_prize(task);
-  report.plan.optimal = report.plan.prize >= report.plan.bound * (1 - kSumRounding);
-  if (report.plan.optimal) report.plan.bound = report.plan.prize;
-  if (!world.has_prizes()) report.max_visited = static_cast<int>(report.plan.bound);
+  report.plan.bound = kNoLimit;
+  report.plan.optimal = false;
+  report.plan.settle(max_prize(report.task));
   return report;
 }
 

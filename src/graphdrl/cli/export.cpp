@@ -7,7 +7,7 @@
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/nn/onnx_export.h"
-#include "graphdrl/planners/explorer.h"
+#include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
 namespace {
@@ -22,12 +22,11 @@ void export_policy(const ExportOptions& options) {
   if (out.extension() != ".onnx") {
     throw Error({.what = "bad name of a model", .expected = "FILE.onnx", .got = in_quotes(options.out), .where = "-o"});
   }
-  if (options.policy == "explorer") {
-    write_onnx(out, *builtin_explorer());
-  } else if (is_explorer_file(options.policy)) {
-    write_onnx(out, *read_explorer_file(options.policy));
+  const TrainedPolicy policy = read_policy(options.policy);
+  if (const auto* const explorer = std::get_if<SharedExplorer>(&policy)) {
+    write_onnx(out, **explorer);
   } else {
-    write_onnx(out, read_policy_file(options.policy));
+    write_onnx(out, std::get<PaperParameters>(policy));
   }
 }
 

@@ -8,8 +8,8 @@
 #include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
-#include "graphdrl/planners/explorer.h"
 #include "graphdrl/planners/paper_policy.h"
+#include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
 namespace {
@@ -38,7 +38,7 @@ std::vector<InspectedStep> inspect_walk(PaperPolicy& policy, const InspectOption
   follow_walk(episode, options.walk, [&](const Observation& observation) {
     InspectedStep step{.position = observation.position, .features = {}, .q = {}, .legal = {}};
     step.features.resize(static_cast<std::size_t>(world.node_count()) * kPaperFeatureCount);
-    policy.encoder_for(*observation.view).encode(observation.position, observation.visits, std::span(step.features));
+    policy.encoder_for(observation.view()).encode(observation.position, observation.visits, std::span(step.features));
     policy.q_values({&observation, 1}, step.q);
     for (int action = 0; action < kActionCount; ++action) {
       step.legal[action] = observation.legal(action);
@@ -74,20 +74,14 @@ std::vector<ExplorerStep> inspect_walk(ExplorerScorer& scorer, const World& worl
   Episode episode(world, {.budget = budget, .action_space = action_space_of(world)});
   std::vector<ExplorerStep> steps;
   follow_walk(episode, options.walk, [&](const Observation& observation) {
-    NodeSet visited(world.node_count());
-    for (const NodeId node : observation.walk) visited.insert(node);
+    const NodeSet ground = observation.ground();
     steps.push_back({.position = observation.position, .visits = {}, .seen = {}, .shortfall = {}});
     ExplorerStep& step = steps.back();
-    const auto visits = scorer.encoder().append(*observation.view,
-                                                {.visited = visited,
-                                                 .visited_count = observation.visited_count,
-                                                 .position = observation.position,
-                                                 .spendable = observation.spendable},
-                                                kExplorerScope, step.seen);
+    const auto visits = scorer.encoder().append(Exploration(observation, ground), kExplorerScope, step.seen);
     step.visits.assign(visits.begin(), visits.end());
     if (visits.empty()) return;
     scorer.shortfalls(step.seen, step.shortfall);
-    step.choice = scorer.choose(*observation.view, step.seen, visits);
+    step.choice = scorer.choose(*observation.task, step.seen, visits);
   });
   return steps;
 }
@@ -194,13 +188,12 @@ void print(const std::vector<TensorSpec>& specs, const Steps& steps, const Inspe
 }
 
 void inspect(const InspectOptions& options) {
-  if (options.policy == "explorer" || is_explorer_file(options.policy)) {
-    const SharedExplorer explorer =
-        options.policy == "explorer" ? builtin_explorer() : read_explorer_file(options.policy);
+  TrainedPolicy trained = read_policy(options.policy);
+  if (const auto* const explorer = std::get_if<SharedExplorer>(&trained)) {
     std::vector<ExplorerStep> steps;
     if (!options.walk.empty()) {
       const World world = load_one_world(options.map);
-      ExplorerScorer scorer(explorer);
+      ExplorerScorer scorer(*explorer);
       steps = inspect_walk(scorer, world, options);
     }
     print(ExplorerParameters::specs(), steps, options);
@@ -209,7 +202,7 @@ void inspect(const InspectOptions& options) {
   if (options.budget_given) {
     throw Error({.what = "the paper's network looks at no budget", .where = "--budget"});
   }
-  PaperPolicy policy(read_policy_file(options.policy));
+  PaperPolicy policy(std::get<PaperParameters>(std::move(trained)));
   print(PaperParameters::specs(), options.walk.empty() ? std::vector<InspectedStep>() : inspect_walk(policy, options),
         options);
 }

@@ -58,7 +58,7 @@ std::optional<double> least_budget(const World& world) {
   const NodeId given = world.given().start;
   const NodeId start = given == kNoNode ? world.valid_nodes().front() : given;
   const auto may_visit_all = [&](double budget) {
-    return max_prize({.view = world, .start = start, .budget = budget}) >= world.total_prize() * (1 - kPrizeRounding);
+    return max_prize(Task(world, start, budget)) >= world.total_prize() * (1 - kPrizeRounding);
   };
   const Graph& open = world.open();
   double high = 2.0 * world.valid_count() * open.max_cost();  // a tour along a spanning tree

@@ -1,14 +1,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
+#include <atomic>
 #include <csignal>
 #include <memory>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/report/map_drawing.h"
@@ -25,18 +24,12 @@ constexpr std::size_t kWidestDrawing = 240;        // characters
 struct PlanOptions {
   std::string map;
   MapOptions reading;
-  std::string budget;
-  std::string start;
-  std::string end;
+  AskedText asked;
   PlanRequest request;
-  std::optional<std::int64_t> iterations;
+  std::optional<double> time_limit_s;
   std::vector<std::string> out;
   bool json = false;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 // A bar on standard error once a plan takes a while.
 class PlanDisplay {
@@ -44,8 +37,8 @@ class PlanDisplay {
   explicit PlanDisplay(const World& world) : valid_count_(world.valid_count()), display_(stderr, "visited", 0) {}
   ~PlanDisplay() { display_.finish(); }
 
-  void show(const PlanProgress& progress) {
-    const double elapsed_s = seconds_since(begin_);
+  void show(const Progress& progress) {
+    const double elapsed_s = watch_.seconds();
     if (elapsed_s < kProgressAfterS) return;
     const std::string bound = progress.bound <= valid_count_ ? fmt::format(", bound {:.0f}", progress.bound) : "";
     display_.show_line(fmt::format("{} of {} nodes{}  {:.0f} s", progress.visited, valid_count_, bound, elapsed_s),
@@ -53,7 +46,7 @@ class PlanDisplay {
   }
 
  private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
   int valid_count_;
   ProgressDisplay display_;
 };
@@ -69,22 +62,23 @@ std::string format_bound(const World& world, const PlanReport& answer) {
   const Plan& plan = answer.plan;
   const char* const what = world.has_prizes() ? "is worth more" : "visits more";
   if (plan.optimal) return fmt::format("optimal  no walk {}\n", what);
-  const std::string most =
-      world.has_prizes() ? fmt::format("{:g}", plan.bound) : fmt::format("{} nodes", answer.max_visited);
+  const std::string most = world.has_prizes() ? decimal(plan.bound) : fmt::format("{} nodes", answer.max_visited());
   return fmt::format("bound    no walk {} than {}, {:.1f} %: the gap is {:.1f} points\n", what, most,
-                     world.percent_of_all(plan.bound), world.percent_of_all(plan.bound - plan.prize));
+                     world.percent_of_all(plan.bound),
+                     world.percent_of_all(plan.bound) - world.percent_of_all(plan.prize));
 }
 
-std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const PlanReport& answer) {
+std::string format_plan(const PlanReport& answer) {
+  const World& world = answer.world;
+  const Task& task = answer.task;
   const Plan& plan = answer.plan;
-  std::string text = fmt::format("{}, {} from {}", world.name(), policy_label(options.request.policy),
-                                 name_of(world, plan.walk.front()));
-  if (!task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, task.end));
-  text += fmt::format(", budget {:g}\n", task.budget);
-  text += fmt::format("visited  {} of {} nodes, {:.1f} %, for {:g}\n", plan.visited, world.valid_count(),
-                      100.0 * plan.visited / world.valid_count(), plan.cost);
+  std::string text = fmt::format("{}, {} from {}", world.name(), answer.policy, name_of(world, plan.walk.front()));
+  if (!task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, task.end()));
+  text += fmt::format(", budget {}\n", decimal(task.budget()));
+  text += fmt::format("visited  {} of {} nodes, {:.1f} %, for {}\n", plan.visited, world.valid_count(),
+                      100.0 * plan.visited / world.valid_count(), decimal(plan.cost));
   if (world.has_prizes()) {
-    text += fmt::format("prize    {:g} of {:g}, {:.1f} %\n", plan.prize, world.total_prize(),
+    text += fmt::format("prize    {} of {}, {:.1f} %\n", decimal(plan.prize), decimal(world.total_prize()),
                         world.percent_of_all(plan.prize));
   }
   text += format_bound(world, answer);
@@ -107,10 +101,12 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
 }
 
 volatile std::sig_atomic_t plan_signal = 0;
+std::atomic<bool> plan_stopped = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
 
 extern "C" void remember_plan_signal(int signal) {
   plan_signal = signal;
-  stop_planning();
+  plan_stopped = true;
 }
 
 // The first signal ends the planning, and the best walk so far is printed; the second one ends the program.
@@ -122,42 +118,20 @@ void stop_planning_on_signals() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-// The policy's name, with the iterations asked for.
-std::string policy_of(const PlanOptions& options) {
-  if (!options.iterations) return options.request.policy;
-  if (options.request.policy == "search") return fmt::format("search:{}", *options.iterations);
-  throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(options.request.policy, 200)});
-}
-
-// What the options say; the file, where they do not.
-Task task_of(const World& world, const PlanOptions& options) {
-  const GivenTask& given = world.given();
-  NodeId start = given.start == kNoNode ? world.valid_nodes().front() : given.start;
-  if (!options.start.empty()) start = parse_node(world, options.start, "start");
-  if (options.budget.empty() && !given.budget) {
-    throw Error({.what = "no budget is given", .expected = "--budget B", .where = world.name()});
-  }
-  return {.view = world,
-          .start = start,
-          .budget = options.budget.empty() ? checked_budget(world, *given.budget)
-                                           : Budget::parse(options.budget).cost_in(world),
-          .end = options.end.empty() ? given.end : parse_end(world, options.end).of(start)};
-}
-
-void plan(PlanOptions options) {
-  options.request.policy = policy_of(options);
+void plan(const PlanOptions& options) {
   const World world = load_one_world(options.map, options.reading);
-  const Task task = task_of(world, options);
+  const Task task(world, asked_of(world, options.asked));
   for (const std::string& file : options.out) check_plan_file(world, file);
   stop_planning_on_signals();
   PlanDisplay display(world);
-  const Report report = [&](const PlanProgress& progress) { display.show(progress); };
-  const PlanReport answer = make_plan(world, task, options.request, report);
+  const ProgressListener listener = [&](const Progress& progress) { display.show(progress); };
+  const PlanReport answer =
+      make_plan(world, task, options.request, Clock(options.time_limit_s, &plan_stopped, &listener));
   for (const std::string& file : options.out) write_plan(answer, file);
   if (options.json) {
     print_json(plan_json(answer));
   } else {
-    print_text(format_plan(world, task, options, answer));
+    print_text(format_plan(answer));
   }
   if (plan_signal != 0) throw CLI::RuntimeError(128 + plan_signal);
 }
@@ -173,30 +147,30 @@ void add_plan_command(CLI::App& app) {
       ->required()
       ->type_name("MAP");
   command
-      ->add_option("--budget", options->budget,
+      ->add_option("--budget", options->asked.budget,
                    "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's")
       ->check(not_empty())
       ->type_name("B");
   command
       ->add_option(
-          "--start", options->start,
+          "--start", options->asked.start,
           "A node id, or row,col on a grid; in a graph with labels a label, or #N for node id N. The default is the "
           "file's, else the first valid node")
       ->check(not_empty())
       ->type_name("S");
   command
-      ->add_option("--end", options->end,
+      ->add_option("--end", options->asked.end,
                    "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, "
                    "else anywhere")
       ->check(not_empty())
       ->type_name("E");
   command->add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
   command
-      ->add_option("--iterations", options->iterations,
+      ->add_option("--iterations", options->request.iterations,
                    "Of search: how many steps to take in all; the default depends on the size of the world")
       ->type_name("N");
   command
-      ->add_option("--time-limit", options->request.time_limit_s,
+      ->add_option("--time-limit", options->time_limit_s,
                    "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, "
                    "others stop "
                    "with what they have")

@@ -9,35 +9,31 @@
 
 namespace graphdrl {
 
+Budget::Budget(double cost) : text_(fmt::format("{}", cost)), value_(std::abs(cost)) {  // -0
+  if (!(cost >= 0)) {
+    throw Error({.what = "bad budget", .expected = "a number from 0 up", .got = fmt::format("{}", cost)});
+  }
+}
+
 Budget Budget::parse(std::string_view text) {
-  Budget budget;
-  budget.text_ = text;
   std::string_view number = text;
-  budget.relative_ = number.ends_with('x');
-  if (budget.relative_) number.remove_suffix(1);
+  const bool relative = number.ends_with('x');
+  if (relative) number.remove_suffix(1);
   const char* const end = number.data() + number.size();
-  const auto [rest, error] = std::from_chars(number.data(), end, budget.value_);
-  if (error != std::errc() || rest != end || !(budget.value_ >= 0) || !std::isfinite(budget.value_)) {
+  double value = 0;
+  const auto [rest, error] = std::from_chars(number.data(), end, value);
+  if (error != std::errc() || rest != end || !(value >= 0)) {
     throw Error(
         {.what = "bad budget", .expected = "a number from 0 up, or a multiple like 1.1x", .got = in_quotes(text)});
   }
-  budget.value_ = std::abs(budget.value_);  // -0
+  Budget budget(value);
+  budget.text_ = text;
+  budget.relative_ = relative;
   return budget;
 }
 
-double Budget::cost_in(const World& world) const {
-  if (!relative_) return checked_budget(world, value_, text_);
-  return checked_budget(world, std::floor(value_ * world.valid_count() + 1e-9) * world.open().mean_cost(), text_);
-}
-
-double checked_budget(const World& world, double cost, std::string_view text) {
-  const double most = static_cast<double>(kMaxSteps) * world.open().mean_cost();
-  if (cost <= most) return cost;
-  throw Error(
-      {.what = "bad budget",
-       .expected = fmt::format("at most {:g}: a walk has at most {} steps, and stays in memory", most, kMaxSteps),
-       .got = text.empty() ? fmt::format("{:g}", cost) : fmt::format("{} = {:g}", text, cost),
-       .where = world.name()});
+double Budget::cost_in(const View& view) const {
+  return relative_ ? std::floor(value_ * view.valid_count() + 1e-9) * view.open().mean_cost() : value_;
 }
 
 }  // namespace graphdrl

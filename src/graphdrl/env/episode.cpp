@@ -1,34 +1,35 @@
 #include "graphdrl/env/episode.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 
-Episode::Episode(const World& world, const EpisodeOptions& options)
-    : world_(world),
-      view_(world),
-      options_(options),
-      limit_(world.spending_limit(options.budget)),
-      visits_(world.node_count()) {
-  if (!(options.budget >= 0) || !std::isfinite(options.budget)) {
-    throw Error({.what = "bad budget", .expected = "a number from 0 up", .got = fmt::format("{}", options.budget)});
-  }
+Episode::Episode(const World& world, const Task& task, const EpisodeOptions& options)
+    : world_(world), options_(options), task_(task), visits_(world.node_count()) {
   if (options.action_space == ActionSpace::kDirections && !world.is_grid()) {
     throw Error({.what = "directions need a grid map", .where = world.name()});
   }
+  reset(task.start());
 }
 
+namespace {
+
+// A start from which the end is in reach: the end itself.
+NodeId any_start(const World& world, const End& end) {
+  const NodeId start = world.valid_nodes().front();
+  const NodeId at = end.of(start);
+  return at >= 0 && at < world.node_count() && !world.is_blocked(at) ? at : start;
+}
+
+}  // namespace
+
+Episode::Episode(const World& world, const EpisodeOptions& options)
+    : Episode(world, Task(world, any_start(world, options.end), options.budget, options.end), options) {}
+
 void Episode::reset(NodeId start) {
-  const NodeId end = options_.end.of(start);
-  check(Task{.view = view_, .start = start, .budget = options_.budget, .end = end});
-  if (end != kNoNode && end != end_) cost_to_end_ = costs_to(world_.into(), end);
-  end_ = end;
+  task_.start_at(start);
   std::fill(visits_.begin(), visits_.end(), 0);
   walk_.assign(1, start);
   walk_hash_ = extended_walk_hash(kEmptyWalkHash, start);
@@ -47,8 +48,7 @@ StepResult Episode::step(int action) {
 }
 
 bool Episode::can_stay() const {
-  const double to_end = end_ == kNoNode ? 0 : cost_to_end_[position_];
-  return world_.open().mean_cost() + to_end <= limit_ - spent_;
+  return world_.open().mean_cost() + task_.cost_to_end(position_) <= task_.limit() - spent_;
 }
 
 StepResult Episode::stay() {
@@ -81,7 +81,7 @@ double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
 
 bool Episode::done() const {
   if (terminal() || std::ssize(walk_) > kMaxSteps) return true;
-  if (options_.action_space == ActionSpace::kDirections && end_ == kNoNode) return limit_ - spent_ < 1;
+  if (options_.action_space == ActionSpace::kDirections && task_.ends_anywhere()) return task_.limit() - spent_ < 1;
   const Observation now = observation();
   for (int action = 0; action < now.action_count(); ++action) {
     if (now.affordable(action)) return false;
@@ -90,18 +90,15 @@ bool Episode::done() const {
 }
 
 Observation Episode::observation() const {
-  return {.view = &view_,
+  return {.task = &task_,
           .action_space = options_.action_space,
           .position = position_,
-          .end = end_,
           .visits = visits_,
           .walk = walk_,
           .walk_hash = walk_hash_,
           .visited_count = visited_count_,
-          .budget = options_.budget,
           .spent = spent_,
-          .spendable = limit_ - spent_,
-          .cost_to_end = end_ == kNoNode ? std::span<const double>() : std::span<const double>(cost_to_end_)};
+          .spendable = task_.limit() - spent_};
 }
 
 }  // namespace graphdrl

@@ -41,10 +41,13 @@ struct StepResult {
 // One walk. Not thread safe. step() is O(1) and allocates nothing but the growing walk.
 class Episode {
  public:
-  // Throws Error on a budget below 0 or not a number, and on directions in a world that is no grid.
+  // A walk of a task, begun at its start. Budget and end are the task's, not the options'. Throws Error on directions
+  // in a world that is no grid.
+  Episode(const World& world, const Task& task, const EpisodeOptions& options = {});
+  // The same, not begun: the task is made with each start. Throws Error on a bad budget or end, too.
   Episode(const World& world, const EpisodeOptions& options);
 
-  // Begins a new walk. Throws Error on a start or end that is blocked or not in the world, and on an end out of reach.
+  // Begins a new walk. Throws Error as a task's start_at().
   void reset(NodeId start);
 
   // REQUIRES: !done(), 0 <= action < observation().action_count(), and the action can be paid for.
@@ -64,6 +67,7 @@ class Episode {
   bool terminal() const { return options_.end_at_full_coverage && all_visited(); }
 
   const World& world() const { return world_; }
+  const Task& task() const { return task_; }
   Observation observation() const;
   NodeId position() const { return position_; }
   const std::vector<std::uint32_t>& visits() const { return visits_; }
@@ -79,11 +83,8 @@ class Episode {
   double reward_of(bool blocked, std::uint32_t visits_before) const;
 
   World world_;
-  View view_;
   EpisodeOptions options_;
-  double limit_;  // what may be spent in all
-  NodeId end_ = kNoNode;
-  std::vector<double> cost_to_end_;  // [N]; empty where the walk may end anywhere
+  Task task_;
   NodeId position_ = kNoNode;
   std::vector<std::uint32_t> visits_;  // [N]
   std::vector<NodeId> walk_;

@@ -2,11 +2,30 @@
 
 namespace graphdrl {
 
-double change_of_penalties(const View& view, const NodeSetView& visited, NodeId node) {
-  double change = -leftover_penalty(unvisited_neighbours_up_to_three(view, visited, node));
+FirstVisit Exploration::nearest_first_visit(NearestFirst& search) const {
+  FirstVisit nearest;
+  for_first_visits(
+      search,
+      [&](NodeId node, double cost) {
+        nearest = {node, cost};
+        return false;
+      },
+      [](double) { return true; });
+  return nearest;
+}
+
+void Exploration::make(const FirstVisit& visit, NodeSet& ground) {
+  ground.insert(visit.node);
+  ++ground_count_;
+  position_ = visit.node;
+  spendable_ -= visit.cost;
+}
+
+double change_of_penalties(const View& view, const NodeSetView& ground, NodeId node) {
+  double change = -leftover_penalty(unvisited_neighbours_up_to_three(view, ground, node));
   for (const NodeId other : view.into().neighbours(node)) {
-    if (visited.contains(other)) continue;
-    const int neighbours = unvisited_neighbours_up_to_three(view, visited, other);
+    if (ground.contains(other)) continue;
+    const int neighbours = unvisited_neighbours_up_to_three(view, ground, other);
     change += leftover_penalty(neighbours - 1) - leftover_penalty(neighbours);
   }
   return change;

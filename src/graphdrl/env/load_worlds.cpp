@@ -70,4 +70,12 @@ End parse_end(const World& world, std::string_view text) {
   return End::at(parse_node(world, text, "end"));
 }
 
+Asked asked_of(const World& world, const AskedText& text) {
+  Asked asked;
+  if (!text.budget.empty()) asked.budget = Budget::parse(text.budget);
+  if (!text.start.empty()) asked.start = parse_node(world, text.start, "start");
+  if (!text.end.empty()) asked.end = parse_end(world, text.end);
+  return asked;
+}
+
 }  // namespace graphdrl

@@ -24,4 +24,12 @@ NodeId parse_node(const World& world, std::string_view text, std::string_view ro
 // Where walks must end, as users say it: "anywhere", "start", or a node as for parse_node(). Throws Error.
 End parse_end(const World& world, std::string_view text);
 
+// A task as users write it: empty for what they do not say.
+struct AskedText {
+  std::string budget = {};
+  std::string start = {};
+  std::string end = {};
+};
+Asked asked_of(const World& world, const AskedText& text);  // throws Error
+
 }  // namespace graphdrl

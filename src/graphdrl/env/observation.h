@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "graphdrl/env/view.h"
+#include "graphdrl/env/task.h"
 
 namespace graphdrl {
 
@@ -14,8 +14,8 @@ enum class ActionSpace {
 };
 
 // Grids are walked in directions, as in the paper, other worlds by neighbours.
-inline ActionSpace action_space_of(const World& world) {
-  return world.is_grid() ? ActionSpace::kDirections : ActionSpace::kNeighbours;
+inline ActionSpace action_space_of(const View& view) {
+  return view.is_grid() ? ActionSpace::kDirections : ActionSpace::kNeighbours;
 }
 
 inline constexpr int kNoAction = -1;  // no action leads there
@@ -25,43 +25,40 @@ inline constexpr int kStop = -2;
 
 // A view into an episode, valid until its next step.
 struct Observation {
-  const View* view;
+  const Task* task;  // with what is known of the world
   ActionSpace action_space;
   NodeId position;
-  NodeId end;                             // where the walk must end; kNoNode: anywhere
   std::span<const std::uint32_t> visits;  // [N]; the start counts, a blocked move counts for the node stayed on
   std::span<const NodeId> walk;           // every position so far, the start first; a blocked move repeats its node
   std::uint64_t walk_hash;                // of the walk: extended_walk_hash() of each position
   int visited_count;                      // valid nodes visited
-  double budget;                          // of the whole walk, in units of cost
-  double spent;
-  double spendable;                     // what is left, with room for the rounding of sums
-  std::span<const double> cost_to_end;  // [N]; empty where the walk may end anywhere
+  double spent;                           // in units of cost
+  double spendable;                       // what is left, with room for the rounding of sums
 
+  const View& view() const { return task->view(); }
   bool visited(NodeId node) const { return visits[node] > 0; }
-  bool all_visited() const { return visited_count == view->valid_count(); }
+  // The nodes visited.
+  NodeSet ground() const;
+  bool all_visited() const { return visited_count == view().valid_count(); }
 
   int action_count() const {
     return static_cast<int>(action_space == ActionSpace::kDirections ? kAllDirections.size()
-                                                                     : view->open_neighbours(position).size());
+                                                                     : view().open_neighbours(position).size());
   }
 
   // Where an action leads; the current node itself where the move is blocked.
   NodeId target(int action) const {
-    return action_space == ActionSpace::kDirections ? view->direction_target(position, action)
-                                                    : view->open_neighbours(position)[action];
+    return action_space == ActionSpace::kDirections ? view().grid().direction_target(position, action)
+                                                    : view().open_neighbours(position)[action];
   }
 
   // What an action costs. Directions are of grids, where every move costs 1, blocked or not.
   double cost(int action) const {
-    return action_space == ActionSpace::kDirections ? 1.0 : view->open().cost(position, action);
+    return action_space == ActionSpace::kDirections ? 1.0 : view().open().cost(position, action);
   }
 
   // Whether what is left pays for the action, and for the way to the end after it.
-  bool affordable(int action) const {
-    const double after = cost_to_end.empty() ? 0.0 : cost_to_end[target(action)];
-    return cost(action) + after <= spendable;
-  }
+  bool affordable(int action) const { return cost(action) + task->cost_to_end(target(action)) <= spendable; }
 
   // The action mask: false where a move would be blocked or cannot be paid for. A blocked direction can be chosen all
   // the same; a move that cannot be paid for cannot.

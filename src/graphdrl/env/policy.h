@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "graphdrl/base/clock.h"
 #include "graphdrl/env/observation.h"
 
 namespace graphdrl {
@@ -13,9 +14,10 @@ class Policy {
  public:
   virtual ~Policy() = default;
 
-  // Writes a move for each observation: an action of its action space, or kStop.
+  // Writes a move for each observation: an action of its action space, or kStop. Once the clock passes, the best that
+  // it knows by then.
   // REQUIRES: actions is as long as observations; no observed episode is done.
-  virtual void act(std::span<const Observation> observations, std::span<int> actions) = 0;
+  virtual void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) = 0;
 };
 
 }  // namespace graphdrl

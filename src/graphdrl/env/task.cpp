@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "graphdrl/base/error.h"
 #include "graphdrl/graph/search.h"
 
@@ -22,26 +26,135 @@ void check_node(const View& view, NodeId node, const char* role) {
                .where = view.name()});
 }
 
-}  // namespace
-
-CostToEnd::CostToEnd(const Task& task) {
-  if (!task.ends_anywhere()) costs_ = costs_to(task.view.into(), task.end);
+double budget_of(const World& world, const std::optional<Budget>& asked) {
+  if (asked) return asked->cost_in(world);
+  if (world.given().budget) return *world.given().budget;
+  throw Error(
+      {.what = "no budget is given", .expected = "one asked for, or one of the map's file", .where = world.name()});
 }
 
-void check(const Task& task) {
-  check_node(task.view, task.start, "start");
-  if (task.ends_anywhere()) return;
-  check_node(task.view, task.end, "end");
-  bool reached = task.end == task.start;
-  NearestFirst().run_cheapest(task.view.open(), task.start, task.limit(), [&](NodeId node, double) {
-    reached = reached || node == task.end;
-    return reached ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
-  });
-  if (!reached) {
-    throw Error({.what = "the end cannot be reached within the budget",
-                 .got = fmt::format("node {} from node {} for {:g}", task.end, task.start, task.budget),
-                 .where = task.view.name()});
+NodeId start_of(const World& world, const std::optional<NodeId>& asked) {
+  if (asked) return *asked;
+  return world.given().start == kNoNode ? world.valid_nodes().front() : world.given().start;
+}
+
+End end_of(const World& world, const std::optional<End>& asked) {
+  if (asked) return *asked;
+  return world.given().end == kNoNode ? End::anywhere() : End::at(world.given().end);
+}
+
+}  // namespace
+
+Task::Task(const World& world, const Asked& asked)
+    : Task(world, start_of(world, asked.start), budget_of(world, asked.budget), end_of(world, asked.end)) {}
+
+Task::Task(View view, NodeId start, double budget, End end)
+    : view_(std::move(view)),
+      asked_end_(end),
+      start_(start),
+      end_(end.of(start)),
+      budget_(Budget(budget).cost_in(view_)) {
+  // More than enough is enough: so many mean edges visit everything.
+  const double enough = static_cast<double>(kMaxSteps) * view_.open().mean_cost();
+  limit_ = std::min(view_.spending_limit(budget_), enough);
+  if (std::isinf(budget_)) budget_ = enough;
+  check_node(view_, start_, "start");
+  if (!ends_anywhere()) {
+    check_node(view_, end_, "end");
+    to_end_ = std::make_shared<const std::vector<double>>(costs_to(view_.into(), end_));
   }
+  check();
+}
+
+void Task::check() const {
+  if (cost_to_end(start_) <= limit_) return;
+  throw Error({.what = "the end cannot be reached within the budget",
+               .got = fmt::format("node {} from node {} for {}", end_, start_, budget_),
+               .where = view_.name()});
+}
+
+void Task::start_at(NodeId start) {
+  if (start == start_) return;
+  if (asked_end_.of(start) != end_) {
+    *this = Task(view_, start, budget_, asked_end_);
+    return;
+  }
+  check_node(view_, start, "start");
+  const NodeId before = std::exchange(start_, start);
+  try {
+    check();
+  } catch (...) {
+    start_ = before;
+    throw;
+  }
+  reach_.forget();
+}
+
+Task Task::rest(NodeId position, double budget, NodeSet visited) const {
+  Task task = *this;
+  task.asked_end_ = ends_anywhere() ? End::anywhere() : End::at(end_);
+  task.start_ = position;
+  task.budget_ = budget;
+  task.limit_ = std::min(view_.spending_limit(budget), limit_);
+  task.ground_ = visited;
+  task.ground_.insert(position);
+  if (claimed_.empty()) {
+    task.claimed_ = std::move(visited);
+    task.claimed_.insert(position);
+  } else {
+    task.claimed_.insert_all(task.ground_);
+  }
+  task.reach_.forget();
+  return task;
+}
+
+Task Task::without(const NodeSet& claimed) const {
+  Task task = *this;
+  if (task.claimed_.empty()) task.claimed_ = NodeSet(view_.node_count());
+  task.claimed_.insert_all(claimed);
+  task.claims_beyond_ground_ = true;
+  return task;
+}
+
+NodeSet Task::ground() const {
+  if (!ground_.empty()) return ground_;
+  NodeSet start(view_.node_count());
+  start.insert(start_);
+  return start;
+}
+
+const Reach& Task::reach() const {
+  return reach_.of(*this);
+}
+
+Task::LazyReach& Task::LazyReach::operator=(const LazyReach& other) {
+  auto known = other.known();
+  const std::lock_guard lock(mutex_);
+  known_ = std::move(known);
+  return *this;
+}
+
+std::shared_ptr<const Reach> Task::LazyReach::known() const {
+  const std::lock_guard lock(mutex_);
+  return known_;
+}
+
+const Reach& Task::LazyReach::of(const Task& task) {
+  const std::lock_guard lock(mutex_);
+  if (known_ != nullptr) return *known_;
+  Reach reach{.nodes = {}, .contains = std::vector<bool>(task.view().node_count())};
+  const auto take = [&](NodeId node, double cost) {
+    if (cost + task.cost_to_end(node) > task.limit()) return;
+    reach.contains[node] = true;
+    reach.nodes.push_back(node);
+  };
+  take(task.start(), 0);
+  NearestFirst().run_cheapest(task.view().open(), task.start(), task.limit(), [&](NodeId node, double cost) {
+    take(node, cost);
+    return NearestFirst::Next::kThrough;
+  });
+  known_ = std::make_shared<const Reach>(std::move(reach));
+  return *known_;
 }
 
 }  // namespace graphdrl

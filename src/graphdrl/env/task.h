@@ -1,9 +1,15 @@
 // What a planner is asked: where a walk begins, where it must end, and what it may spend.
 #pragma once
 
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "graphdrl/env/budget.h"
 #include "graphdrl/env/view.h"
+#include "graphdrl/env/world.h"
 #include "graphdrl/graph/node_set.h"
 
 namespace graphdrl {
@@ -25,41 +31,96 @@ class End {
   bool at_start_;
 };
 
-// The most steps of any walk. A budget pays for a multiple of that where edges cost next to nothing; walks stay in
-// memory, so they end here.
-inline constexpr std::int64_t kMaxSteps = 100'000'000;
+// What was asked for. What is not said is what the map's file says, else the default: from the first valid node, to
+// anywhere. A budget must come from one of the two.
+struct Asked {
+  std::optional<Budget> budget = {};
+  std::optional<NodeId> start = {};
+  std::optional<End> end = {};
+};
+
+// What a walk can visit: in reach for the budget, with enough left for the way to the end.
+struct Reach {
+  std::vector<NodeId> nodes;   // the start first, then nearest first
+  std::vector<bool> contains;  // [N]
+};
 
 // Visit what is worth most within a budget. Of walks worth the same, the cheaper one is better.
-struct Task {
-  View view;
-  NodeId start;
-  double budget;         // in units of cost
-  NodeId end = kNoNode;  // where the walk must end; kNoNode: anywhere
-  NodeSet visited = {};  // before, and worth nothing any more: the start among them; empty for the start alone
-
-  double limit() const { return view.spending_limit(budget); }
-  bool ends_anywhere() const { return end == kNoNode; }
-  NodeSet visited_before() const {
-    NodeSet set = visited.empty() ? NodeSet(view.node_count()) : visited;
-    set.insert(start);
-    return set;
-  }
-};
-
-// What it costs to get from a node to where a task's walk must end; nothing where it may end anywhere.
-class CostToEnd {
+//
+// Checked when it is made: whoever has a task need not check it. A value; copies share what was searched for.
+class Task {
  public:
-  CostToEnd() = default;
-  // Cost: a search of the whole graph, where there is an end.
-  explicit CostToEnd(const Task& task);
+  // Throws Error where nobody states a budget, and as below.
+  Task(const World& world, const Asked& asked);
 
-  double operator()(NodeId node) const { return costs_.empty() ? 0 : costs_[node]; }
+  // Throws Error on a budget below 0 or not a number, on a start or an end that is blocked or not in the world, and on
+  // an end out of reach. Cost: where there is an end, a search of the whole graph.
+  Task(View view, NodeId start, double budget, End end = End::anywhere());
+
+  // The same from another start, at no further search unless the end moves with it. Throws Error as above.
+  void start_at(NodeId start);
+
+  // The rest of a walk that stands at a node, has visited a set of nodes and must end where this task's does. What it
+  // visited is its ground, and worth nothing any more.
+  // REQUIRES: the end can be reached for the budget.
+  Task rest(NodeId position, double budget, NodeSet visited) const;
+
+  // The same, but these nodes are worth nothing: others have claimed them. They are no ground of ours by that.
+  Task without(const NodeSet& claimed) const;
+
+  const View& view() const { return view_; }
+  NodeId start() const { return start_; }
+  NodeId end() const { return end_; }  // kNoNode: anywhere
+  bool ends_anywhere() const { return end_ == kNoNode; }
+  double budget() const { return budget_; }  // units of cost
+  // What may be spent in all: the budget with room for the rounding of sums, and at most kMaxSteps mean edges.
+  double limit() const { return limit_; }
+
+  // What it costs to get from a node to the end; 0 where any will do, kNoLimit where there is no way.
+  double cost_to_end(NodeId node) const { return to_end_ == nullptr ? 0 : (*to_end_)[node]; }
+
+  // Ground: nodes that the walk may go through as often as it likes; the start is one. A first visit makes ground.
+  NodeSet ground() const;
+  int ground_count() const { return ground_.empty() ? 1 : ground_.count(); }
+  // Claimed nodes are worth nothing any more, whoever visited them.
+  bool is_claimed(NodeId node) const { return !claimed_.empty() && claimed_.contains(node); }
+  // What the first visit of a node is worth, the start among them.
+  double prize(NodeId node) const { return is_claimed(node) ? 0 : view_.prize(node); }
+  // Whether first visits may be worth other than 1.
+  bool has_prizes() const { return view_.has_prizes() || claims_beyond_ground_; }
+
+  // Searched for when it is first asked for. Any number of threads may ask.
+  const Reach& reach() const;
 
  private:
-  std::vector<double> costs_;  // [N], or empty
-};
+  class LazyReach {
+   public:
+    LazyReach() = default;
+    LazyReach(const LazyReach& other) : known_(other.known()) {}
+    LazyReach& operator=(const LazyReach& other);
+    const Reach& of(const Task& task);
+    void forget() { known_ = nullptr; }
 
-// Throws Error where a walk has no place for its start or end: blocked, not in the world, or an end out of reach.
-void check(const Task& task);
+   private:
+    std::shared_ptr<const Reach> known() const;
+
+    mutable std::mutex mutex_;
+    std::shared_ptr<const Reach> known_;
+  };
+
+  void check() const;
+
+  View view_;
+  End asked_end_;
+  NodeId start_;
+  NodeId end_;
+  double budget_;
+  double limit_;
+  std::shared_ptr<const std::vector<double>> to_end_;  // [N]; null where it may end anywhere
+  NodeSet ground_ = {};                                // empty for the start alone
+  NodeSet claimed_ = {};                               // empty for none
+  bool claims_beyond_ground_ = false;
+  mutable LazyReach reach_;
+};
 
 }  // namespace graphdrl

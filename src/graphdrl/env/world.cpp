@@ -2,81 +2,48 @@
 
 #include <algorithm>
 
-#include "graphdrl/base/error.h"
-
 namespace graphdrl {
 
 World::World(std::string name, GridMap map) {
-  const auto data = std::make_shared<Data>();
-  data->name = std::move(name);
-  data->open = Graph::grid(map);
-  data->blocked = map.blocked;
-  if (!map.diagonals) data->direction_targets.resize(data->open.node_count());
-  for (NodeId node = 0; node < std::ssize(data->direction_targets); ++node) {
-    for (const Direction direction : kAllDirections) {
-      const NodeId next = grid_neighbour(map.rows, map.cols, node, direction);
-      data->direction_targets[node][static_cast<int>(direction)] = next == kNoNode || map.blocked[next] ? node : next;
-    }
-  }
-  data->map = std::move(map);
-  index_nodes(*data);
-  data_ = data;
+  Known known{.name = std::move(name), .open = Graph::grid(map), .blocked = map.blocked};
+  known.grid = std::make_shared<const KnownGrid>(std::move(map));
+  const auto made = make_known(std::move(known));
+  data_ = std::make_shared<const Data>(Data{.known = made, .view = made});
 }
 
 World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels,
              std::vector<double> prizes, GivenTask given, Places places) {
-  const auto data = std::make_shared<Data>();
-  data->name = std::move(name);
-  data->blocked = std::move(blocked);
-  data->labels = std::move(labels);
-  data->prizes = std::move(prizes);
-  data->given = given;
-  data->places = std::move(places);
-  const bool any_blocked = std::find(data->blocked.begin(), data->blocked.end(), true) != data->blocked.end();
+  Known known{.name = std::move(name), .open = {}, .blocked = std::move(blocked), .prizes = std::move(prizes)};
+  const bool any_blocked = std::find(known.blocked.begin(), known.blocked.end(), true) != known.blocked.end();
+  std::optional<Graph> whole;
   if (any_blocked) {
-    data->open = graph.without(data->blocked);
-    data->graph = std::move(graph);
+    known.open = graph.without(known.blocked);
+    whole = std::move(graph);
   } else {
-    data->open = std::move(graph);
+    known.open = std::move(graph);
   }
-  if (data->open.directed()) {
-    data->into = data->open.reversed();
-    std::vector<Edge> edges = data->open.edges();
-    for (Edge& edge : edges) edge.cost = 1;
-    data->both_ways = Graph::from_edges(data->open.node_count(), edges);
-  }
-  index_nodes(*data);
-  data_ = data;
-}
-
-void World::index_nodes(Data& data) {
-  for (NodeId node = 0; node < data.open.node_count(); ++node) {
-    if (data.blocked[node]) continue;
-    data.valid_nodes.push_back(node);
-    data.total_prize += data.prizes.empty() ? 1 : data.prizes[node];
-  }
-  if (data.valid_nodes.empty()) throw Error({.what = "the world has no valid node", .where = data.name});
-  data.exact_sums = data.open.integer_costs();
+  const auto made = make_known(std::move(known));
+  data_ = std::make_shared<const Data>(Data{.known = made,
+                                            .view = made,
+                                            .graph = std::move(whole),
+                                            .labels = std::move(labels),
+                                            .given = given,
+                                            .places = std::move(places)});
 }
 
 Point World::place(NodeId node) const {
-  return data_->map ? data_->map->place(node) : data_->places.points[node];
+  return has_cells() ? map()->place(node) : data_->places.points[node];
 }
 
 const std::string& World::unit() const {
   static const std::string kCells = "cells";
-  if (!data_->map) return data_->places.unit;
-  return data_->map->frame ? data_->map->frame->unit : kCells;
+  if (!has_cells()) return data_->places.unit;
+  return map()->frame ? map()->frame->unit : kCells;
 }
 
 const Graph& World::graph() const {
-  std::call_once(data_->graph_made, [&] {
-    if (!data_->map || valid_count() == node_count()) return;
-    GridMap map = *data_->map;
-    map.blocked.assign(map.blocked.size(), false);
-    data_->graph = Graph::grid(map);
-  });
-  return data_->graph ? *data_->graph : data_->open;
+  if (data_->graph) return *data_->graph;
+  return has_cells() && valid_count() < node_count() ? view().grid().graph() : open();
 }
 
 }  // namespace graphdrl

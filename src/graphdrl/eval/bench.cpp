@@ -1,7 +1,6 @@
 #include "graphdrl/eval/bench.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -20,16 +19,10 @@
 namespace graphdrl {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int kEpisodes = 1024;      // side by side
 constexpr int kStepsPerVisit = 100;  // of one episode before the next one's turn
 constexpr int kRounds = 50;
 constexpr int kMoves = 300;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // FNV-1a, word by word.
 class Signature {
@@ -68,7 +61,7 @@ EnvironmentBench bench_environment() {
     runners.back().features.resize(static_cast<std::size_t>(world.node_count()) * kPaperFeatureCount);
     reset(world, encoder, runners.back(), env[i]);
   }
-  const auto start = Clock::now();
+  const Stopwatch watch;
   for (int round = 0; round < kRounds; ++round) {
     env.for_each([&](int index, Episode& episode) {
       Runner& runner = runners[index];
@@ -81,7 +74,7 @@ EnvironmentBench bench_environment() {
       }
     });
   }
-  const double elapsed_s = seconds_since(start);
+  const double elapsed_s = watch.seconds();
   Signature signature;
   for (int i = 0; i < kEpisodes; ++i) {
     signature.add(static_cast<std::uint64_t>(env[i].position()));
@@ -104,7 +97,8 @@ void add_paper_walks(Signature& signature, std::initializer_list<const char*> po
   for (const World& world : load_worlds({"paper"})) {
     for (const char* const name : policies) {
       const auto policy = make_policy(name, 1);
-      for (const RolloutResult& result : roll_out(world, world.valid_nodes(), {}, *policy)) add(signature, result.walk);
+      for (const RolloutResult& result : roll_out(Episode(world, {}), world.valid_nodes(), *policy))
+        add(signature, result.walk);
     }
   }
 }
@@ -140,7 +134,7 @@ std::vector<Task> random_tasks() {
         const NodeId far_end = any_node();
         const bool in_reach = costs_to(world.into(), far_end)[start] <= budget;
         for (const NodeId end : {kNoNode, start, in_reach ? far_end : start}) {
-          tasks.push_back({.view = world, .start = start, .budget = budget, .end = end});
+          tasks.emplace_back(world, start, budget, end == kNoNode ? End::anywhere() : End::at(end));
         }
       }
     }
@@ -183,9 +177,9 @@ double bench_move_ms() {
     if (episode.done()) episode.reset(0);
     const Observation observation = episode.observation();
     int action = 0;
-    const auto start = Clock::now();
+    const Stopwatch watch;
     policy.act({&observation, 1}, {&action, 1});
-    times_ms.push_back(1e3 * seconds_since(start));
+    times_ms.push_back(1e3 * watch.seconds());
     episode.step(static_cast<int>(rng.below(kActionCount)));
   }
   return median(times_ms);

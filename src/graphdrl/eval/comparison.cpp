@@ -35,8 +35,7 @@ constexpr std::uint64_t kBlockSeeds = 3;  // of a map's policy seed
 // A world with what all policies share on it.
 struct Arena {
   World world;
-  double budget;
-  End end;
+  Task task;                      // of any of the starts
   std::vector<NodeId> starts;     // one per episode
   std::optional<double> optimum;  // percent
 };
@@ -45,11 +44,12 @@ std::optional<double> mean_optimum(const Arena& arena) {
   const int nodes = arena.world.valid_count();
   if (nodes > kOptimumMaxNodes) return std::nullopt;
   std::map<NodeId, double> by_start;
+  Task task = arena.task;
   double sum = 0;
   for (const NodeId start : arena.starts) {
     const auto [known, fresh] = by_start.try_emplace(start);
     if (fresh) {
-      const Task task{.view = arena.world, .start = start, .budget = arena.budget, .end = arena.end.of(start)};
+      task.start_at(start);
       const auto prize = exact_prize(task);
       if (!prize) return std::nullopt;
       known->second = arena.world.percent_of_all(*prize);
@@ -75,20 +75,14 @@ std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& opt
 std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
-    const GivenTask& given = world.given();
-    const End own = given.end == kNoNode ? End::anywhere() : End::at(given.end);
-    const End end = options.end.empty() ? own : parse_end(world, options.end);
-    arenas.push_back({.world = world,
-                      .budget = options.budget ? options.budget->cost_in(world)
-                                               : checked_budget(world, given.budget.value_or(kPaperBudget)),
-                      .end = end,
-                      .starts = draw_starts(world, options, arenas.size()),
-                      .optimum = {}});
-  }
-  for (const Arena& arena : arenas) {
-    for (const NodeId start : arena.starts) {
-      check({.view = arena.world, .start = start, .budget = arena.budget, .end = arena.end.of(start)});
-    }
+    Asked asked{.budget = options.budget};
+    if (!asked.budget && !world.given().budget) asked.budget = Budget(kPaperBudget);
+    if (!options.end.empty()) asked.end = parse_end(world, options.end);
+    const std::vector<NodeId> starts = draw_starts(world, options, arenas.size());
+    asked.start = starts.front();
+    Task task(world, asked);
+    for (const NodeId start : starts) task.start_at(start);  // throws Error where the end is out of reach
+    arenas.push_back({.world = world, .task = task, .starts = starts, .optimum = {}});
   }
   parallel_for(static_cast<int>(arenas.size()), [&](int i) { arenas[i].optimum = mean_optimum(arenas[i]); });
   return arenas;
@@ -154,10 +148,9 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
     const auto policy = make_policy(options.policies[block.policy], block_seed, options);
     std::vector<NodeId> starts;
     for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
-    const EpisodeOptions episode_options{
-        .budget = arena.budget, .end = arena.end, .action_space = action_space_of(arena.world)};
     try {
-      const auto results = roll_out(arena.world, starts, episode_options, *policy);
+      const auto results =
+          roll_out(Episode(arena.world, arena.task, {.action_space = action_space_of(arena.world)}), starts, *policy);
       for (std::size_t i = 0; i < results.size(); ++i) {
         coverages[block.policy][block.map][block.episodes[i]] = arena.world.percent_of_all(results[i].prize);
       }
@@ -172,12 +165,14 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
 }
 
 // A policy's label; the name as given where two policies would share one.
-std::string unambiguous_label(const std::string& name, const std::vector<std::string>& all) {
-  std::string label = policy_label(name);
-  for (const std::string& other : all) {
-    if (other != name && policy_label(other) == label) return name;
+std::string unambiguous_label(const std::string& name, const ComparisonOptions& options) {
+  const auto label_of = [&](const std::string& policy) {
+    return options.own_policies.contains(policy) ? policy : parse_policy(policy).label;
+  };
+  for (const std::string& other : options.policies) {
+    if (other != name && label_of(other) == label_of(name)) return name;
   }
-  return label;
+  return label_of(name);
 }
 
 ComparisonOverall summarise_rows(const std::string& policy, std::span<const ComparisonRow> rows) {
@@ -217,10 +212,9 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
   const Coverages coverages = measure(arenas, options);
   Comparison comparison{.options = options, .rows = {}, .overall = {}};
   for (std::size_t policy = 0; policy < options.policies.size(); ++policy) {
-    const std::string label = unambiguous_label(options.policies[policy], options.policies);
+    const std::string label = unambiguous_label(options.policies[policy], options);
     for (std::size_t map = 0; map < arenas.size(); ++map) {
       const Arena& arena = arenas[map];
-      const bool ends_anywhere = arena.end.of(arena.starts.front()) == kNoNode;
       const std::vector<double>& values = coverages[policy][map];
       comparison.rows.push_back(
           {.map = arena.world.name(),
@@ -228,11 +222,11 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
            .valid_nodes = arena.world.valid_count(),
            .has_prizes = arena.world.has_prizes(),
            .given = arena.world.given(),
-           .budget = arena.budget,
+           .budget = arena.task.budget(),
            .episodes = static_cast<int>(arena.starts.size()),
            .coverage = values.empty() ? std::nullopt : std::optional(summarise(values)),
            .optimum = arena.optimum,
-           .paper = ends_anywhere ? paper_result(arena.world.name(), arena.budget) : std::nullopt});
+           .paper = arena.task.ends_anywhere() ? paper_result(arena.world.name(), arena.task.budget()) : std::nullopt});
     }
     comparison.overall.push_back(summarise_rows(label, std::span(comparison.rows).last(arenas.size())));
   }

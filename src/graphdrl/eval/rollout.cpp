@@ -23,9 +23,8 @@ int block_size(const World& world) {
   return static_cast<int>(std::clamp<std::int64_t>(kMostNodesInBlock / world.node_count(), 1, kMostInBlock));
 }
 
-std::vector<RolloutResult> roll_out(const World& world, std::span<const NodeId> starts, const EpisodeOptions& options,
-                                    Policy& policy) {
-  std::vector<Episode> episodes(starts.size(), Episode(world, options));
+std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy) {
+  std::vector<Episode> episodes(starts.size(), episode);
   std::vector<int> running;
   for (int i = 0; i < std::ssize(starts); ++i) {
     episodes[i].reset(starts[i]);
@@ -41,43 +40,35 @@ std::vector<RolloutResult> roll_out(const World& world, std::span<const NodeId> 
     std::vector<int> going_on;
     for (std::size_t k = 0; k < running.size(); ++k) {
       if (actions[k] == kStop) continue;
-      Episode& episode = episodes[running[k]];
-      step(episode, actions[k]);
-      if (!episode.done()) going_on.push_back(running[k]);
+      Episode& running_one = episodes[running[k]];
+      step(running_one, actions[k]);
+      if (!running_one.done()) going_on.push_back(running[k]);
     }
     running = std::move(going_on);
   }
   std::vector<RolloutResult> results;
   results.reserve(episodes.size());
-  for (const Episode& episode : episodes) results.push_back({episode.walk(), episode.coverage(), episode.prize()});
+  for (const Episode& ended : episodes) results.push_back({ended.walk(), ended.coverage(), ended.prize()});
   return results;
 }
 
-Plan plan_by_steps(const World& world, const Task& task, Policy& policy, Deadline deadline, const Report& report) {
-  Ticker ticker(deadline, report, /*every=*/1);  // a step may take as long as the policy likes
-  const End end = task.ends_anywhere() ? End::anywhere() : End::at(task.end);
-  Episode episode(world, {.budget = task.budget, .end = end, .action_space = action_space_of(world)});
-  episode.reset(task.start);
+Plan plan_by_steps(const World& world, const Task& task, Policy& policy, const Clock& clock) {
+  Ticker ticker(clock, /*every=*/1);  // a step may take as long as the policy likes
+  Episode episode(world, task, {.action_space = action_space_of(world)});
   std::size_t last_visit = 1;  // length of the walk up to it
   while (!episode.done() && !ticker.tick(episode.visited_count())) {
     const Observation now = episode.observation();
     const int visited = episode.visited_count();
     int action = kStop;
-    policy.act({&now, 1}, {&action, 1});
+    policy.act({&now, 1}, {&action, 1}, clock);
     if (action == kStop) break;
     step(episode, action);
     if (episode.visited_count() > visited) last_visit = episode.walk().size();
   }
   std::vector<NodeId> walk = episode.walk();
-  if (task.ends_anywhere()) {
-    walk.resize(last_visit);
-  } else if (walk.back() != task.end) {
-    NearestFirst search;
-    search.run(world.open(), walk.back(), kNoLimit, [&](NodeId node, double) {
-      return node == task.end ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
-    });
-    search.append_path_to(task.end, walk);
-  }
+  if (task.ends_anywhere()) walk.resize(last_visit);
+  NearestFirst search;
+  append_way_to_end(task, walk, search);
   return plan_of_walk(task, std::move(walk));
 }
 

@@ -20,12 +20,11 @@ struct RolloutResult {
 // counts would fill the memory.
 int block_size(const World& world);
 
-// One episode per start, side by side, each until it is done or the policy stops.
-std::vector<RolloutResult> roll_out(const World& world, std::span<const NodeId> starts, const EpisodeOptions& options,
-                                    Policy& policy);
+// One episode like `episode` per start, side by side, each until it is done or the policy stops.
+std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy);
 
 // Lets a policy that chooses step by step walk one episode, and takes that for its plan, up to the last first visit
-// where it may end anywhere. Once the deadline passes, goes straight to where it must end.
-Plan plan_by_steps(const World& world, const Task& task, Policy& policy, Deadline deadline, const Report& report);
+// where it may end anywhere. Once the clock passes, goes straight to where it must end.
+Plan plan_by_steps(const World& world, const Task& task, Policy& policy, const Clock& clock = {});
 
 }  // namespace graphdrl

@@ -40,6 +40,12 @@ struct GridMap {
   bool cut_corners = false;   // a diagonal step may have a blocked cell beside it
   std::optional<GridFrame> frame = {};
 
+  GridMap without_obstacles() const {
+    GridMap map = *this;
+    map.blocked.assign(map.blocked.size(), false);
+    return map;
+  }
+
   NodeId node(Cell cell) const { return cell.row * cols + cell.col; }
   Cell cell(NodeId node) const { return {node / cols, node % cols}; }
   bool contains(Cell cell) const { return cell.row >= 0 && cell.row < rows && cell.col >= 0 && cell.col < cols; }

@@ -17,6 +17,10 @@ class NodeSet {
 
   bool contains(NodeId node) const { return (words_[node / 64] >> (node % 64) & 1) != 0; }
   void insert(NodeId node) { words_[node / 64] |= std::uint64_t{1} << (node % 64); }
+  // REQUIRES: both are of as many nodes.
+  void insert_all(const NodeSet& other) {
+    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= other.words_[i];
+  }
   bool empty() const { return words_.empty(); }  // made for no node at all
   int count() const {
     int sum = 0;

@@ -70,15 +70,16 @@ void ExplorerBatch::clear() {
 }
 
 // Breadth first, whichever way edges lead.
-void ExplorerEncoder::gather_horizon(const View& view, const ExplorationState& state) {
+void ExplorerEncoder::gather_horizon(const Exploration& state) {
+  const View& view = state.view();
   const Graph& graph = view.both_ways();
   if (place_.size() < static_cast<std::size_t>(graph.node_count())) place_.resize(graph.node_count());
   if (++call_ == 0) {
     std::fill(place_.begin(), place_.end(), Place());
     call_ = 1;
   }
-  nodes_.assign(1, state.position);
-  place_[state.position] = {call_, 0};
+  nodes_.assign(1, state.position());
+  place_[state.position()] = {call_, 0};
   steps_to_horizon_ = 0;
   std::size_t next_ring = 1;  // where nodes one step farther begin
   for (std::size_t head = 0; head < nodes_.size() && nodes_.size() < kExplorerHorizon; ++head) {
@@ -99,7 +100,7 @@ void ExplorerEncoder::gather_horizon(const View& view, const ExplorationState& s
   unvisited_.resize(count);
   degree_.resize(count);
   unvisited_neighbours_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) unvisited_[i] = !state.visited.contains(nodes_[i]);
+  for (std::size_t i = 0; i < count; ++i) unvisited_[i] = state.is_new(nodes_[i]);
   offsets_.assign(1, 0);
   neighbours_.clear();
   whole_component_ = true;
@@ -112,7 +113,7 @@ void ExplorerEncoder::gather_horizon(const View& view, const ExplorationState& s
         unvisited += unvisited_[index];
       } else {
         whole_component_ = false;
-        unvisited += !state.visited.contains(next);
+        unvisited += state.is_new(next);
       }
     }
     degree_[i] = graph.degree(nodes_[i]);
@@ -122,19 +123,20 @@ void ExplorerEncoder::gather_horizon(const View& view, const ExplorationState& s
 }
 
 // Distances of what a scope may hold, and the work in reach. Work beyond the horizon is taken to be in reach.
-void ExplorerEncoder::measure_distances(const View& view, const ExplorationState& state, int scope) {
+void ExplorerEncoder::measure_distances(const Exploration& state, int scope) {
+  const View& view = state.view();
   const Graph& open = view.open();
   const std::size_t most = 2 * static_cast<std::size_t>(scope);
   const double farthest = steps_to_horizon_ * open.max_cost();
-  const bool all_in_reach = whole_component_ && !open.directed() && farthest <= state.spendable;
-  const bool beyond_in_reach = !whole_component_ && !open.directed() && farthest <= state.spendable;
+  const bool all_in_reach = whole_component_ && !open.directed() && farthest <= state.spendable();
+  const bool beyond_in_reach = !whole_component_ && !open.directed() && farthest <= state.spendable();
   distance_.assign(nodes_.size(), kNoLimit);
   distance_[0] = 0;
   in_reach_.assign(1, 0);
   int reached = 1;
   double work = unvisited_[0];
   bool reached_all = true;
-  search_.run(open, state.position, state.spendable, [&](NodeId node, double cost) {
+  search_.run(open, state.position(), state.spendable(), [&](NodeId node, double cost) {
     const int index = local(node);
     if (index < 0 || reached == kExplorerHorizon || ((all_in_reach || beyond_in_reach) && in_reach_.size() == most)) {
       reached_all = false;
@@ -150,45 +152,44 @@ void ExplorerEncoder::measure_distances(const View& view, const ExplorationState
   if (!reached_all && all_in_reach) {
     work = static_cast<double>(std::count(unvisited_.begin(), unvisited_.end(), 1));
   } else if (!reached_all) {
-    work = view.valid_count() - state.visited_count;
+    work = view.valid_count() - state.ground_count();
   }
   work_ = work;
 }
 
-// All that a scope may hold, and kLeastVisits at least, unless they are far beyond the horizon's size of visited
-// ground.
-void ExplorerEncoder::find_first_visits(const View& view, const ExplorationState& state) {
+// All that a scope may hold, and at least kLeastVisits. Stops after kExplorerHorizon searched nodes once it has one.
+void ExplorerEncoder::find_first_visits(const Exploration& state) {
+  const View& view = state.view();
   int possible = 0;  // first visits that may be in scope
   number_.assign(nodes_.size(), -1);
   for (const int index : in_reach_) {
     number_[index] = 0;
     const auto from = view.into().neighbours(nodes_[index]);
     possible += unvisited_[index] != 0 &&
-                std::any_of(from.begin(), from.end(), [&](NodeId node) { return state.visited.contains(node); });
+                std::any_of(from.begin(), from.end(), [&](NodeId node) { return state.ground().contains(node); });
   }
   visit_cost_.assign(nodes_.size(), 0.0);
   visits_.clear();
   overlooked_ = false;
   int in_scope = 0;
   int searched = 0;
-  search_.run(view.open(), state.position, state.spendable, [&](NodeId node, double cost) {
-    const bool enough = (in_scope == possible && std::ssize(visits_) >= kLeastVisits) ||
-                        (searched >= kExplorerHorizon && !visits_.empty());
-    if (enough) {
-      overlooked_ = in_scope < possible || !in_reach_is_all_;
-      return NearestFirst::Next::kEnd;
-    }
-    ++searched;
-    if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
-    if (cost + state.cost_to_end(node) > state.spendable) return NearestFirst::Next::kPast;
+  const auto visit = [&](NodeId node, double cost) {
     visits_.push_back({node, cost});
     if (const int index = local(node); index >= 0) {
       visit_cost_[index] = cost / unit_;
       in_scope += number_[index] == 0;
       distance_[index] = std::min(distance_[index], cost / unit_);
     }
-    return NearestFirst::Next::kPast;
-  });
+    return true;
+  };
+  const auto meet = [&](double /*cost*/) {
+    const bool enough = (in_scope == possible && std::ssize(visits_) >= kLeastVisits) ||
+                        (searched >= kExplorerHorizon && !visits_.empty());
+    if (enough) overlooked_ = in_scope < possible || !in_reach_is_all_;
+    ++searched;
+    return !enough;
+  };
+  state.for_first_visits(search_, visit, meet);
 }
 
 void ExplorerEncoder::choose_scope(const View& view, int scope) {
@@ -314,7 +315,8 @@ Graph ExplorerEncoder::scope_graph(const View& view) const {
   return Graph::from_lists(std::move(offsets), std::move(lists));
 }
 
-void ExplorerEncoder::append_nodes(const View& view, const ExplorationState& state, ExplorerBatch& batch) {
+void ExplorerEncoder::append_nodes(const Exploration& state, ExplorerBatch& batch) {
+  const View& view = state.view();
   const Graph& open = view.open();
   const Graph& into = view.into();
   const BudgetView budget(share_ * state.free_to_spend() / unit_, share_ * work_);
@@ -356,20 +358,21 @@ void ExplorerEncoder::append_nodes(const View& view, const ExplorationState& sta
   }
 }
 
-void ExplorerEncoder::append_visits(const View& view, const ExplorationState& state, ExplorerBatch& batch) {
+void ExplorerEncoder::append_visits(const Exploration& state, ExplorerBatch& batch) {
+  const View& view = state.view();
   const double budget = state.free_to_spend() / unit_;
   const int first_row = batch.graphs.first_node(batch.graphs.graph_count() - 1);
   for (const FirstVisit& visit : visits_) {
     const int i = local(visit.node);
     double next_cost = kFar;
-    const double most = std::min(state.spendable - visit.cost, kFar * unit_);
+    const double most = std::min(state.spendable() - visit.cost, kFar * unit_);
     search_.run(view.open(), visit.node, most, [&](NodeId node, double cost) {
-      if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
+      if (state.ground().contains(node)) return NearestFirst::Next::kThrough;
       next_cost = cost / unit_;
       return NearestFirst::Next::kEnd;
     });
     const BudgetView after(share_ * (budget - visit_cost_[i]), share_ * (work_ - 1));
-    const double change = change_of_penalties(view, state.visited, visit.node);
+    const double change = change_of_penalties(view, state.ground(), visit.node);
     append_row(
         VisitFeatures{
             .cost = near_scale(visit_cost_[i]),
@@ -394,18 +397,18 @@ void ExplorerEncoder::append_visits(const View& view, const ExplorationState& st
   batch.budget_per_work.push_back(budget / std::max(work_, 1.0));
 }
 
-std::span<const FirstVisit> ExplorerEncoder::append(const View& view, const ExplorationState& state, int scope,
-                                                    ExplorerBatch& batch) {
+std::span<const FirstVisit> ExplorerEncoder::append(const Exploration& state, int scope, ExplorerBatch& batch) {
+  const View& view = state.view();
   unit_ = view.open().mean_cost();
-  gather_horizon(view, state);
-  measure_distances(view, state, scope);
-  find_first_visits(view, state);
+  gather_horizon(state);
+  measure_distances(state, scope);
+  find_first_visits(state);
   choose_scope(view, scope);
   measure_work_distances();
-  measure_parts(view.valid_count() - state.visited_count);
+  measure_parts(view.valid_count() - state.ground_count());
   measure_hanging_trees();
-  append_nodes(view, state, batch);
-  append_visits(view, state, batch);
+  append_nodes(state, batch);
+  append_visits(state, batch);
   return visits_;
 }
 

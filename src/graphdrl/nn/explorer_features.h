@@ -90,7 +90,7 @@ class ExplorerEncoder {
  public:
   // Appends a state: of the valid nodes in reach the nearest `scope`, and more as above. Gives the first visits among
   // them, nearest first, until the next call. The batch may outlive everything else.
-  std::span<const FirstVisit> append(const View& view, const ExplorationState& state, int scope, ExplorerBatch& batch);
+  std::span<const FirstVisit> append(const Exploration& state, int scope, ExplorerBatch& batch);
 
   // Whether there may have been first visits out of scope at the last call.
   bool overlooked() const { return overlooked_; }
@@ -106,16 +106,16 @@ class ExplorerEncoder {
     return {neighbours_.data() + offsets_[index], neighbours_.data() + offsets_[index + 1]};
   }
 
-  void gather_horizon(const View& view, const ExplorationState& state);
-  void measure_distances(const View& view, const ExplorationState& state, int scope);
-  void find_first_visits(const View& view, const ExplorationState& state);
+  void gather_horizon(const Exploration& state);
+  void measure_distances(const Exploration& state, int scope);
+  void find_first_visits(const Exploration& state);
   void choose_scope(const View& view, int scope);
   void measure_work_distances();
   void measure_parts(int unvisited_in_world);
   void measure_hanging_trees();
   Graph scope_graph(const View& view) const;
-  void append_nodes(const View& view, const ExplorationState& state, ExplorerBatch& batch);
-  void append_visits(const View& view, const ExplorationState& state, ExplorerBatch& batch);
+  void append_nodes(const Exploration& state, ExplorerBatch& batch);
+  void append_visits(const Exploration& state, ExplorerBatch& batch);
 
   NearestFirst search_;
   double unit_ = 1;           // mean cost of an edge

@@ -40,7 +40,7 @@ PaperFeatureEncoder::PaperFeatureEncoder(const View& view, PaperWall wall) : vie
   if (!view.is_grid()) {
     throw Error({.what = "the paper's features need a grid map", .where = view.name()});
   }
-  const GridMap& map = view.map();
+  const GridMap& map = view.grid().map();
   untouched_.resize(static_cast<std::size_t>(view.node_count()) * kPaperFeatureCount);
   for (NodeId node = 0; node < view.node_count(); ++node) {
     const Cell cell = map.cell(node);
@@ -48,12 +48,13 @@ PaperFeatureEncoder::PaperFeatureEncoder(const View& view, PaperWall wall) : vie
     at(untouched_, node, PaperFeature::kY) = static_cast<float>(cell.col);
     at(untouched_, node, PaperFeature::kObstacle) = view.is_blocked(node) ? 1.0f : 0.0f;
     at(untouched_, node, PaperFeature::kWall) = is_wall(wall, map, cell) ? 1.0f : 0.0f;
-    at(untouched_, node, PaperFeature::kUnvisitedNeighbours) = static_cast<float>(view.graph().degree(node));
+    at(untouched_, node, PaperFeature::kUnvisitedNeighbours) = static_cast<float>(view.grid().graph().degree(node));
   }
 }
 
 void PaperFeatureEncoder::mark_visited(NodeId node, std::span<float> out) const {
-  for (const NodeId next : view_.graph().neighbours(node)) at(out, next, PaperFeature::kUnvisitedNeighbours) -= 1.0f;
+  for (const NodeId next : view_.grid().graph().neighbours(node))
+    at(out, next, PaperFeature::kUnvisitedNeighbours) -= 1.0f;
 }
 
 template <typename Count>

@@ -7,6 +7,7 @@ namespace graphdrl {
 namespace {
 
 constexpr int kVisitsPerTick = 256;
+constexpr double kWalkingOn = 2;  // of the time that the nearest walk took, kept for walking on
 
 // Draws one of the actions that are allowed; kStop where none is.
 template <typename Allowed>
@@ -22,14 +23,14 @@ int draw_action(const Observation& observation, const Allowed& allowed, Rng& rng
 class DepthFirstWalk {
  public:
   DepthFirstWalk(const Task& task, NearestFirst& search)
-      : open_(task.view.open()),
-        to_end_(task),
+      : task_(task),
+        open_(task.view().open()),
         search_(search),
         spendable_(task.limit()),
-        visited_(task.visited_before()),
+        visited_(task.ground()),
         next_(open_.node_count()),
-        walk_{task.start},
-        trail_{task.start} {}
+        walk_{task.start()},
+        trail_{task.start()} {}
 
   // Goes on by one first visit. False where there is none left, or none can be paid for.
   bool advance() { return open_.directed() ? advance_one_way() : advance_both_ways(); }
@@ -101,7 +102,7 @@ class DepthFirstWalk {
   // False where it cannot be paid for.
   bool step_to(NodeId next) {
     spendable_ -= open_.cost(walk_.back(), open_.index_of(walk_.back(), next));
-    if (spendable_ < to_end_(next)) return false;
+    if (spendable_ < task_.cost_to_end(next)) return false;
     walk_.push_back(next);
     return true;
   }
@@ -118,8 +119,8 @@ class DepthFirstWalk {
     return found;
   }
 
+  const Task& task_;
   const Graph& open_;
-  CostToEnd to_end_;
   NearestFirst& search_;
   double spendable_;
   NodeSet visited_;
@@ -132,7 +133,7 @@ class DepthFirstWalk {
 
 }  // namespace
 
-void RandomPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
+void RandomPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& now = observations[i];
     const bool directions = now.action_space == ActionSpace::kDirections;  // blocked ones too
@@ -141,7 +142,7 @@ void RandomPolicy::act(std::span<const Observation> observations, std::span<int>
   }
 }
 
-void RandomWalkPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
+void RandomWalkPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& now = observations[i];
     actions[i] = draw_action(
@@ -149,9 +150,8 @@ void RandomWalkPolicy::act(std::span<const Observation> observations, std::span<
   }
 }
 
-Plan DepthFirstPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  check(task);
-  Ticker ticker(deadline, report, kVisitsPerTick);
+Plan DepthFirstPlanner::plan(const Task& task, const Clock& clock) {
+  Ticker ticker(clock, kVisitsPerTick);
   DepthFirstWalk walk(task, search_);
   while (walk.advance()) {
     if (ticker.tick(walk.visits())) break;
@@ -161,23 +161,21 @@ Plan DepthFirstPlanner::plan(const Task& task, Deadline deadline, const Report& 
   return plan_of_walk(task, std::move(steps));
 }
 
-Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  check(task);
-  const CostToEnd to_end(task);
+Plan NearestPlanner::plan(const Task& task, const Clock& clock) {
   using Next = NearestFirst::Next;
-  Ticker ticker(deadline, report, kVisitsPerTick);
-  NodeSet visited = task.visited_before();
+  Ticker ticker(clock, kVisitsPerTick);
+  NodeSet visited = task.ground();
   int visits = visited.count();
   double spendable = task.limit();
-  std::vector<NodeId> walk = {task.start};
+  std::vector<NodeId> walk = {task.start()};
   int met = 0;
   do {
     NodeId goal = kNoNode;
     met = 0;
-    search_.run(task.view.open(), walk.back(), spendable, [&](NodeId node, double cost) {
+    search_.run(task.view().open(), walk.back(), spendable, [&](NodeId node, double cost) {
       ++met;
-      if (visited.contains(node) || task.view.prize(node) <= 0) return Next::kThrough;
-      if (cost + to_end(node) > spendable) return Next::kPast;
+      if (visited.contains(node) || task.prize(node) <= 0) return Next::kThrough;
+      if (cost + task.cost_to_end(node) > spendable) return Next::kPast;
       goal = node;
       spendable -= cost;
       return Next::kEnd;
@@ -191,26 +189,24 @@ Plan NearestPlanner::plan(const Task& task, Deadline deadline, const Report& rep
   return plan_of_walk(task, std::move(walk));
 }
 
-Plan walked_on(const Task& task, const Plan& plan, Deadline deadline) {
-  Task rest = task;
-  rest.start = plan.walk.back();
-  rest.budget = std::max(0.0, task.budget - plan.cost);
-  rest.visited = task.visited_before();
-  for (const NodeId node : plan.walk) rest.visited.insert(node);
-  const Plan more = NearestPlanner().plan(rest, deadline);
+Plan walked_on(const Task& task, const Plan& plan, const Clock& clock) {
+  NodeSet visited = task.ground();
+  for (const NodeId node : plan.walk) visited.insert(node);
+  const Plan more = NearestPlanner().plan(
+      task.rest(plan.walk.back(), std::max(0.0, task.budget() - plan.cost), std::move(visited)), clock);
   if (more.walk.size() == 1) return plan;
   std::vector<NodeId> walk = plan.walk;
   walk.insert(walk.end(), more.walk.begin() + 1, more.walk.end());
   return plan_of_walk(task, std::move(walk));
 }
 
-Plan plan_by_deadline(const Task& task, Deadline deadline, const std::function<Plan(Deadline until)>& search) {
-  const auto begin = std::chrono::steady_clock::now();
-  Plan nearest = NearestPlanner().plan(task, deadline);
-  if (passed(deadline)) return nearest;
+Plan plan_by_deadline(const Task& task, const Clock& clock, const std::function<Plan(const Clock& until)>& search) {
+  const Stopwatch watch;
+  Plan nearest = NearestPlanner().plan(task, clock);
+  if (clock.passed()) return nearest;
   // Walking on takes about as long again, and mostly less.
-  const Plan found = search(*deadline - 2 * (std::chrono::steady_clock::now() - begin));
-  Plan best = walked_on(task, found, deadline);
+  const Plan found = search(clock.sooner(kWalkingOn * watch.seconds()));
+  Plan best = walked_on(task, found, clock);
   return better(nearest, best) ? nearest : best;
 }
 

@@ -1,6 +1,8 @@
 // The rules that learn nothing: two random policies, depth first and nearest unvisited.
 #pragma once
 
+#include <functional>
+
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/policy.h"
 #include "graphdrl/graph/search.h"
@@ -13,7 +15,7 @@ namespace graphdrl {
 class RandomPolicy final : public Policy {
  public:
   explicit RandomPolicy(std::uint64_t seed) : rng_(seed) {}
-  void act(std::span<const Observation> observations, std::span<int> actions) override;
+  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
 
  private:
   Rng rng_;
@@ -23,7 +25,7 @@ class RandomPolicy final : public Policy {
 class RandomWalkPolicy final : public Policy {
  public:
   explicit RandomWalkPolicy(std::uint64_t seed) : rng_(seed) {}
-  void act(std::span<const Observation> observations, std::span<int> actions) override;
+  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
 
  private:
   Rng rng_;
@@ -35,7 +37,7 @@ class RandomWalkPolicy final : public Policy {
 // graphs O(nodes in reach) for every way back.
 class DepthFirstPlanner final : public Planner {
  public:
-  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+  Plan plan(const Task& task, const Clock& clock = {}) override;
 
  private:
   NearestFirst search_;
@@ -46,18 +48,18 @@ class DepthFirstPlanner final : public Planner {
 // than they are.
 class NearestPlanner final : public Planner {
  public:
-  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+  Plan plan(const Task& task, const Clock& clock = {}) override;
 
  private:
   NearestFirst search_;
 };
 
 // A plan that was cut short, walked on by the nearest rule.
-Plan walked_on(const Task& task, const Plan& plan, Deadline deadline);
+Plan walked_on(const Task& task, const Plan& plan, const Clock& clock);
 
 // What a planner does with its time where there is a deadline: the nearest rule's walk first, which costs next to
 // nothing; then search(until), which gives its best plan by an earlier time, walked on by the nearest rule. Gives the
 // better of the two.
-Plan plan_by_deadline(const Task& task, Deadline deadline, const std::function<Plan(Deadline until)>& search);
+Plan plan_by_deadline(const Task& task, const Clock& clock, const std::function<Plan(const Clock& until)>& search);
 
 }  // namespace graphdrl

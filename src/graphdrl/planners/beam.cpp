@@ -54,7 +54,7 @@ class Beam {
  public:
   Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer);
 
-  Plan run(Deadline deadline, const Report& report);
+  Plan run(const Clock& clock);
 
  private:
   // Makes the candidates of every partial walk of the level; false where the time is up.
@@ -70,14 +70,17 @@ class Beam {
   void note_best();
   Plan best_plan(bool complete);
 
+  Exploration exploration(int parent) const {
+    return {task_, visited_sets_[parent], visited_, level_[parent].position, limit_ - level_[parent].spent};
+  }
+
   // What rankings count as spent: less what the prizes would cost, where there are any.
   double priced(const Partial& from, NodeId node, double spent) const {
-    return view_.has_prizes() ? spent - worth_ * (from.prize + view_.prize(node)) : spent;
+    return task_.has_prizes() ? spent - worth_ * (from.prize + task_.prize(node)) : spent;
   }
 
   const Task& task_;
   const View& view_;
-  CostToEnd to_end_;
   double limit_;
   double unit_;
   double worth_ = 0;  // of a unit of prize, in units of cost
@@ -100,14 +103,13 @@ class Beam {
   std::vector<Link> trail_;
   std::vector<Partial> next_level_;
   std::vector<VisitedSets::Child> children_;
-  std::vector<ExplorationState> states_;
+  std::vector<Exploration> states_;
   std::vector<ScoredVisit> scored_;
 };
 
 Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer)
     : task_(task),
-      view_(task.view),
-      to_end_(task),
+      view_(task.view()),
       limit_(task.limit()),
       unit_(view_.open().mean_cost()),
       width_(options.width),
@@ -116,13 +118,13 @@ Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* score
       scorer_(scorer),
       scored_per_level_(scorer == nullptr ? 0 : scored_per_level(width_)),
       visited_(0),
-      visited_sets_(task.visited_before(), view_.node_count()),
+      visited_sets_(task.ground(), view_.node_count()),
       candidates_(static_cast<std::size_t>(width_)) {
-  Partial root{.position = task.start, .trail = -1, .spent = 0, .prize = 0, .penalties = 0, .hash = 0};
-  if (view_.has_prizes() && view_.total_prize() > 0) {
+  Partial root{.position = task.start(), .trail = -1, .spent = 0, .prize = 0, .penalties = 0, .hash = 0};
+  if (task_.has_prizes() && view_.total_prize() > 0) {
     worth_ = limit_ / view_.total_prize();
     mean_prize_ = view_.total_prize() / view_.valid_count();
-    for (const NodeId node : view_.valid_nodes()) most_prize_ = std::max(most_prize_, view_.prize(node));
+    for (const NodeId node : view_.valid_nodes()) most_prize_ = std::max(most_prize_, task_.prize(node));
   }
   const NodeSetView visited = visited_sets_[0];
   for (const NodeId node : view_.valid_nodes()) {
@@ -138,8 +140,8 @@ Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* score
   best_ = root;
 }
 
-Plan Beam::run(Deadline deadline, const Report& report) {
-  Ticker ticker(deadline, report, kExpansionsPerTick);
+Plan Beam::run(const Clock& clock) {
+  Ticker ticker(clock, kExpansionsPerTick);
   // Every partial walk of a level has visited as many nodes: the cheapest of the last level is the answer, but where
   // there are prizes.
   for (;;) {
@@ -154,13 +156,13 @@ Plan Beam::run(Deadline deadline, const Report& report) {
 
 // Of the level, unless an older one is worth more.
 void Beam::note_best() {
-  const auto cost = [&](const Partial& partial) { return partial.spent + to_end_(partial.position); };
+  const auto cost = [&](const Partial& partial) { return partial.spent + task_.cost_to_end(partial.position); };
   const auto level_best = std::min_element(level_.begin(), level_.end(), [&](const Partial& a, const Partial& b) {
     return a.prize != b.prize ? a.prize > b.prize : cost(a) < cost(b);
   });
   const bool better =
       level_best->prize != best_.prize ? level_best->prize > best_.prize : cost(*level_best) < cost(best_);
-  if (!view_.has_prizes() || better) best_ = *level_best;
+  if (!task_.has_prizes() || better) best_ = *level_best;
 }
 
 Plan Beam::best_plan(bool complete) {
@@ -196,6 +198,7 @@ bool Beam::expand_level(Ticker& ticker) {
   return true;
 }
 
+// By spent cost and each share of the penalties.
 Rankings Beam::rankings_of(double spent, double penalties) const {
   Rankings rankings{};
   for (std::size_t i = 0; i < rankings.size(); ++i) rankings[i] = spent + kPenaltyShares[i] * unit_ * penalties;
@@ -250,61 +253,54 @@ void Beam::expand_one_step(int parent) {
   candidates_.begin_parent(parent);
   int branches = 0;
   for (const NodeId node : view_.open_neighbours(from.position)) {
-    if (visited.contains(node) || from.spent + 1 + to_end_(node) > limit_) continue;
+    if (visited.contains(node) || from.spent + 1 + task_.cost_to_end(node) > limit_) continue;
     if (++branches > most_branches_) return;
     consider(parent, visited, node, 1);
   }
 }
 
 void Beam::expand(int parent) {
-  using Next = NearestFirst::Next;
   const Partial& from = level_[parent];
-  const NodeSetView visited = visited_sets_[parent];
+  const Exploration state = exploration(parent);
   const double considered_cost = view_.open().weighted() ? -1 : 1;  // what costs as much was considered before
   int branches = 0;
   double last_cost = 0;
   candidates_.begin_parent(parent);
   double most_useful = most_useful_cost(from);
-  nearest_.run(view_.open(), from.position, limit_ - from.spent, [&](NodeId node, double cost) {
-    ++met_;
-    if (cost > most_useful) {
-      dropped_ = true;
-      return Next::kEnd;
-    }
-    if (visited.contains(node)) return Next::kThrough;
-    if (from.spent + cost + to_end_(node) > limit_) return Next::kPast;
+  const auto visit = [&](NodeId node, double cost) {
     if (branches >= most_branches_ || (branches >= branching_ && cost > last_cost)) {
       dropped_ = true;
-      return Next::kEnd;
+      return false;
     }
     ++branches;
     last_cost = cost;
-    if (cost == considered_cost) return Next::kPast;
-    consider(parent, visited, node, cost);
+    if (cost == considered_cost) return true;
+    consider(parent, state.ground(), node, cost);
     most_useful = most_useful_cost(from);
-    return Next::kPast;
-  });
+    return true;
+  };
+  const auto meet = [&](double cost) {
+    ++met_;
+    dropped_ = dropped_ || cost > most_useful;
+    return cost <= most_useful;
+  };
+  state.for_first_visits(nearest_, visit, meet);
 }
 
 void Beam::expand_scored(int first, int end) {
   states_.clear();
   for (int parent = first; parent < end; ++parent) {
-    const Partial& from = level_[parent];
-    states_.push_back({.visited = visited_sets_[parent],
-                       .visited_count = visited_,
-                       .position = from.position,
-                       .spendable = limit_ - from.spent,
-                       .to_end = &to_end_});
+    states_.push_back(exploration(parent));
   }
-  dropped_ = scorer_->score(view_, states_, scored_) || dropped_;
+  dropped_ = scorer_->score(states_, scored_) || dropped_;
   for (const ScoredVisit& scored : scored_) {
     const int parent = first + scored.state;
     const Partial& from = level_[parent];
     const double spent = from.spent + scored.visit.cost;
     const double penalties =
-        from.penalties + change_of_penalties(view_, states_[scored.state].visited, scored.visit.node);
+        from.penalties + change_of_penalties(view_, states_[scored.state].ground(), scored.visit.node);
     const Rankings plain = rankings_of(priced(from, scored.visit.node, spent), penalties);
-    const double prize = view_.has_prizes() ? (from.prize + view_.prize(scored.visit.node)) / mean_prize_ : 0;
+    const double prize = task_.has_prizes() ? (from.prize + task_.prize(scored.visit.node)) / mean_prize_ : 0;
     candidates_.add({.parent = parent,
                      .node = scored.visit.node,
                      .spent = spent,
@@ -324,7 +320,7 @@ void Beam::keep_best() {
   for (const Candidate& candidate : candidates_.all()) {
     trail_.push_back({candidate.node, level_[candidate.parent].trail});
     children_.push_back({candidate.parent, candidate.node});
-    const double prize = view_.has_prizes() ? level_[candidate.parent].prize + view_.prize(candidate.node) : 0;
+    const double prize = task_.has_prizes() ? level_[candidate.parent].prize + task_.prize(candidate.node) : 0;
     next_level_.push_back({.position = candidate.node,
                            .trail = std::ssize(trail_) - 1,
                            .spent = candidate.spent,
@@ -352,50 +348,47 @@ bool beam_fits(const View& view, const BeamOptions& options) {
   return bytes_needed(view, options, nullptr) <= kMaxBeamBytes;
 }
 
-Plan beam_plan(const Task& task, const BeamOptions& options, Deadline deadline, FirstVisitScorer* scorer,
-               const Report& report) {
-  check(task);
-  const double bytes = bytes_needed(task.view, options, scorer);
+Plan beam_plan(const Task& task, const BeamOptions& options, const Clock& clock, FirstVisitScorer* scorer) {
+  const double bytes = bytes_needed(task.view(), options, scorer);
   if (bytes > kMaxBeamBytes) {
     throw Error({.what = "the beam is too wide for this world",
                  .expected = fmt::format("a width up to {:.0f}", std::floor(kMaxBeamBytes / bytes * options.width)),
                  .got = fmt::format("{}", options.width),
-                 .where = task.view.name()});
+                 .where = task.view().name()});
   }
-  return Beam(task, options, scorer).run(deadline, report);
+  return Beam(task, options, scorer).run(clock);
 }
 
-Plan BeamPlanner::search_once(const Task& task, const BeamOptions& options, Deadline deadline, const Report& report) {
-  Plan best = beam_plan(task, options, deadline, nullptr, report);
+Plan BeamPlanner::search_once(const Task& task, const BeamOptions& options, const Clock& clock) {
+  Plan best = beam_plan(task, options, clock);
   if (scorer_ == nullptr || best.optimal) return best;
-  return better_of(std::move(best), beam_plan(task, options, deadline, scorer_.get(), report));
+  return better_of(std::move(best), beam_plan(task, options, clock, scorer_.get()));
 }
 
-Plan BeamPlanner::search_until(const Task& task, Deadline deadline, const Report& report) {
+Plan BeamPlanner::search_until(const Task& task, const Clock& clock) {
   const auto fits = [&](const BeamOptions& options) {
-    return options.width <= kMaxBeamWidth && bytes_needed(task.view, options, scorer_.get()) <= kMaxBeamBytes;
+    return options.width <= kMaxBeamWidth && bytes_needed(task.view(), options, scorer_.get()) <= kMaxBeamBytes;
   };
-  Plan best = search_once(task, options_, deadline, report);
-  if (other_ != nullptr && !best.optimal) best = better_of(std::move(best), other_->plan(task, deadline, report));
+  Plan best = search_once(task, options_, clock);
+  if (other_ != nullptr && !best.optimal) best = better_of(std::move(best), other_->plan(task, clock));
   // Each of the two grows as long as there is room.
-  for (BeamOptions wider = options_; !best.optimal && !passed(deadline);) {
+  for (BeamOptions wider = options_; !best.optimal && !clock.passed();) {
     const BeamOptions before = wider;
-    wider.branching = std::min(wider.branching, task.view.valid_count()) * 2;
+    wider.branching = std::min(wider.branching, task.view().valid_count()) * 2;
     if (!fits(wider)) wider.branching = before.branching;
     wider.width *= 2;
     if (!fits(wider)) wider.width = before.width;
     const bool grows = wider.width > before.width ||
-                       (wider.branching > before.branching && before.branching < task.view.valid_count());
+                       (wider.branching > before.branching && before.branching < task.view().valid_count());
     if (!grows) break;
-    best = better_of(std::move(best), search_once(task, wider, deadline, report));
+    best = better_of(std::move(best), search_once(task, wider, clock));
   }
   return best;
 }
 
-Plan BeamPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  check(task);
-  if (!deadline) return search_once(task, options_, {}, report);
-  return plan_by_deadline(task, deadline, [&](Deadline until) { return search_until(task, until, report); });
+Plan BeamPlanner::plan(const Task& task, const Clock& clock) {
+  if (!clock.has_deadline()) return search_once(task, options_, clock);
+  return plan_by_deadline(task, clock, [&](const Clock& until) { return search_until(task, until); });
 }
 
 }  // namespace graphdrl

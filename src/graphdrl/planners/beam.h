@@ -12,8 +12,9 @@ namespace graphdrl {
 struct BeamOptions {
   int width = 50;      // partial walks kept per level
   int branching = 16;  // first visits looked at from each, nearest first; all in its scope where the scorer scores them
-  bool cut_ties = false;  // stop there even among equally near ones, of which the graph's order is the judge; else
-                          // after kTiesPerBranch times as many
+  // true: stop at `branching`, ties broken by the graph's order. false: also take ties, up to kTiesPerBranch ·
+  // branching.
+  bool cut_ties = false;
 };
 
 inline constexpr int kTiesPerBranch = 4;
@@ -34,10 +35,10 @@ bool beam_fits(const View& view, const BeamOptions& options);
 // passes, the best partial walk. Cost: a level looks at what is near its partial walks and may still be kept.
 //
 // Where there are prizes, rankings count them against what was spent, at the price of all prizes for the whole budget.
-// Throws Error where the beam could need more than kMaxBeamBytes, and on a bad task [check(Task)].
+// Throws Error where the beam could need more than kMaxBeamBytes.
 // REQUIRES: width and branching of at least 1.
-Plan beam_plan(const Task& task, const BeamOptions& options, Deadline deadline = {}, FirstVisitScorer* scorer = nullptr,
-               const Report& report = {});
+Plan beam_plan(const Task& task, const BeamOptions& options, const Clock& clock = {},
+               FirstVisitScorer* scorer = nullptr);
 
 // Searches once without a scorer and, if there is one, once with it; the better walk counts. With a deadline it
 // searches again and again with twice the width and branching, until the time is up, a walk is known to be optimal or
@@ -49,11 +50,11 @@ class BeamPlanner final : public Planner {
                        std::unique_ptr<Planner> other = nullptr)
       : options_(options), scorer_(std::move(scorer)), other_(std::move(other)) {}
 
-  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+  Plan plan(const Task& task, const Clock& clock = {}) override;
 
  private:
-  Plan search_once(const Task& task, const BeamOptions& options, Deadline deadline, const Report& report);
-  Plan search_until(const Task& task, Deadline deadline, const Report& report);
+  Plan search_once(const Task& task, const BeamOptions& options, const Clock& clock);
+  Plan search_until(const Task& task, const Clock& clock);
 
   BeamOptions options_;
   std::shared_ptr<FirstVisitScorer> scorer_;

@@ -13,29 +13,13 @@
 
 namespace graphdrl {
 
-Reachable::Reachable(const Task& task) : contains(task.view.node_count()), prizes(task.view.node_count()) {
-  const bool anywhere = task.ends_anywhere();
-  const std::vector<double> to_end = anywhere ? std::vector<double>() : costs_to(task.view.into(), task.end);
-  const auto take = [&](NodeId node, double cost) {
-    if (!anywhere && cost + to_end[node] > task.limit()) return;
-    contains[node] = true;
-    nodes.push_back(node);
-    if (task.visited.empty() || !task.visited.contains(node)) prizes[node] = task.view.prize(node);
-  };
-  take(task.start, 0);
-  NearestFirst().run_cheapest(task.view.open(), task.start, task.limit(), [&](NodeId node, double cost) {
-    take(node, cost);
-    return NearestFirst::Next::kThrough;
-  });
-}
-
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // The tree of blocks, with what it costs to arrive in them.
 struct ArrivalTree {
-  ArrivalTree(const Task& task, const Reachable& reachable);
+  ArrivalTree(const Task& task);
 
   Blocks blocks;
   std::vector<double> arrival;  // by place among the blocks' members: the cheapest edge of its block into a member
@@ -43,12 +27,12 @@ struct ArrivalTree {
   std::vector<bool> holds_end;  // [blocks], where the walk must end: in it, or in what hangs from it
 };
 
-ArrivalTree::ArrivalTree(const Task& task, const Reachable& reachable)
-    : blocks(task.view.open(), task.view.into(), task.start, reachable.contains) {
-  const Graph& into = task.view.into();
-  std::vector<int> block_of(task.view.node_count(), -1);
-  std::vector<bool> end_below(task.view.node_count());
-  if (!task.ends_anywhere()) end_below[task.end] = true;
+ArrivalTree::ArrivalTree(const Task& task)
+    : blocks(task.view().open(), task.view().into(), task.start(), task.reach().contains) {
+  const Graph& into = task.view().into();
+  std::vector<int> block_of(task.view().node_count(), -1);
+  std::vector<bool> end_below(task.view().node_count());
+  if (!task.ends_anywhere()) end_below[task.end()] = true;
   for (int block = 0; block < blocks.count(); ++block) {
     const NodeId root = blocks.root(block);
     const auto members = blocks.members(block);
@@ -69,7 +53,7 @@ ArrivalTree::ArrivalTree(const Task& task, const Reachable& reachable)
     }
     back.push_back(cheapest(root));
     holds_end.push_back(end_here);
-    if (end_here && root != task.end) end_below[root] = true;
+    if (end_here && root != task.end()) end_below[root] = true;
   }
 }
 
@@ -88,15 +72,15 @@ void merge(Items& into, Items& from) {
 }
 
 // The first relaxation of bound.h.
-double fractional_bound(const Task& task, const Reachable& reachable, const ArrivalTree& tree) {
-  std::vector<Items> hanging(task.view.node_count());        // what hangs from a node
-  std::vector<double> deepest(task.view.node_count(), 0.0);  // the most that not coming back from there can save
+double fractional_bound(const Task& task, const ArrivalTree& tree) {
+  std::vector<Items> hanging(task.view().node_count());        // what hangs from a node
+  std::vector<double> deepest(task.view().node_count(), 0.0);  // the most that not coming back from there can save
   for (int block = 0; block < tree.blocks.count(); ++block) {
     Items items;
     double saved = 0;
     const auto members = tree.blocks.members(block);
     for (std::size_t i = 0; i < members.size(); ++i) {
-      const double prize = reachable.prizes[members[i]];
+      const double prize = task.prize(members[i]);
       if (prize > 0) items.push({tree.arrival[tree.blocks.first_member(block) + i], prize});
       merge(items, hanging[members[i]]);
       saved = std::max(saved, deepest[members[i]]);
@@ -116,9 +100,9 @@ double fractional_bound(const Task& task, const Reachable& reachable, const Arri
     if (task.ends_anywhere()) deepest[root] = std::max(deepest[root], saved + back);
     merge(hanging[root], items);
   }
-  double left = task.limit() + deepest[task.start];
-  double prize = reachable.prizes[task.start];
-  Items& items = hanging[task.start];
+  double left = task.limit() + deepest[task.start()];
+  double prize = task.prize(task.start());
+  Items& items = hanging[task.start()];
   for (; !items.empty() && left >= 0; items.pop()) {
     const Item& item = items.top();
     prize += item.cost <= left ? item.prize : item.prize * left / item.cost;
@@ -139,17 +123,17 @@ struct Branch {
 // The second relaxation of bound.h.
 class Knapsack {
  public:
-  Knapsack(const Task& task, const ArrivalTree& tree, Deadline deadline)
-      : task_(task), tree_(tree), limit_(task.limit()), deadline_(deadline), hanging_(task.view.node_count()) {}
+  Knapsack(const Task& task, const ArrivalTree& tree, const Clock& clock)
+      : task_(task), tree_(tree), limit_(task.limit()), clock_(clock), hanging_(task.view().node_count()) {}
 
   // Nodes besides the start that can be had within the limit; empty where that takes too long to find out.
   std::optional<int> most_visited() {
     for (int block = 0; block < tree_.blocks.count(); ++block) {
       close_block(block);
-      if (sums_ > kKnapsackSums || passed(deadline_)) return std::nullopt;
+      if (sums_ > kKnapsackSums || clock_.passed()) return std::nullopt;
     }
-    const Branch all = hanging_[task_.start] ? *hanging_[task_.start] : Branch();
-    const bool closed = !task_.ends_anywhere() && task_.end == task_.start;
+    const Branch all = hanging_[task_.start()] ? *hanging_[task_.start()] : Branch();
+    const bool closed = !task_.ends_anywhere() && task_.end() == task_.start();
     return static_cast<int>((closed ? all.closed : all.open).size()) - 1;
   }
 
@@ -189,7 +173,7 @@ class Knapsack {
   const Task& task_;
   const ArrivalTree& tree_;
   double limit_;
-  Deadline deadline_;
+  Clock clock_;
   double sums_ = 0;
   std::vector<std::unique_ptr<Branch>> hanging_;  // [N], what hangs from a node, away from the start; null for nothing
 };
@@ -227,17 +211,17 @@ void Knapsack::close_block(int block) {
 }
 
 // What a walk of so many steps can be worth at most in a bipartite graph; kNever where it is not bipartite.
-double colour_bound(const Task& task, const Reachable& reachable, double steps) {
-  std::vector<std::int8_t> colour(task.view.node_count(), -1);
-  const Graph& graph = task.view.both_ways();
-  colour[task.start] = 0;
-  std::vector<NodeId> queue = {task.start};
+double colour_bound(const Task& task, double steps) {
+  std::vector<std::int8_t> colour(task.view().node_count(), -1);
+  const Graph& graph = task.view().both_ways();
+  colour[task.start()] = 0;
+  std::vector<NodeId> queue = {task.start()};
   std::vector<double> prizes[2];
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const NodeId node = queue[head];
-    prizes[colour[node]].push_back(reachable.prizes[node]);
+    prizes[colour[node]].push_back(task.prize(node));
     for (const NodeId next : graph.neighbours(node)) {
-      if (!reachable.contains[next]) continue;
+      if (!task.reach().contains[next]) continue;
       if (colour[next] == colour[node]) return kNever;
       if (colour[next] >= 0) continue;
       colour[next] = static_cast<std::int8_t>(1 - colour[node]);
@@ -258,19 +242,19 @@ double colour_bound(const Task& task, const Reachable& reachable, double steps) 
 }
 
 // The best way through the strongly connected components of a directed graph.
-double order_bound(const Task& task, const Reachable& reachable) {
-  const Graph& open = task.view.open();
-  const std::vector<int> component = strong_components(open, task.view.into(), task.start, reachable.contains);
+double order_bound(const Task& task) {
+  const Graph& open = task.view().open();
+  const std::vector<int> component = strong_components(open, task.view().into(), task.start(), task.reach().contains);
   const int count = 1 + *std::max_element(component.begin(), component.end());
   std::vector<std::vector<NodeId>> members(count);
-  for (const NodeId node : reachable.nodes) {
+  for (const NodeId node : task.reach().nodes) {
     if (component[node] >= 0) members[component[node]].push_back(node);
   }
   std::vector<double> best(count, 0.0);  // of ways that end in a component, without what it is worth itself
   double most = 0;
   for (int c = 0; c < count; ++c) {
     double here = best[c];
-    for (const NodeId node : members[c]) here += reachable.prizes[node];
+    for (const NodeId node : members[c]) here += task.prize(node);
     most = std::max(most, here);
     for (const NodeId node : members[c]) {
       for (const NodeId next : open.neighbours(node)) {
@@ -284,23 +268,21 @@ double order_bound(const Task& task, const Reachable& reachable) {
 
 }  // namespace
 
-double max_prize(const Task& task, Deadline deadline) {
-  check(task);
-  const Graph& open = task.view.open();
-  const Reachable reachable(task);
+double max_prize(const Task& task, const Clock& clock) {
+  const Graph& open = task.view().open();
   double most = 0;
-  for (const NodeId node : reachable.nodes) most += reachable.prizes[node];
+  for (const NodeId node : task.reach().nodes) most += task.prize(node);
   const double steps = open.min_cost() > 0 ? std::floor(task.limit() / open.min_cost() * (1 + 1e-12)) : kNever;
-  most = std::min(most, colour_bound(task, reachable, steps));
-  if (open.directed()) most = std::min(most, order_bound(task, reachable));
-  if (passed(deadline)) return most;
-  const ArrivalTree tree(task, reachable);
-  most = std::min(most, fractional_bound(task, reachable, tree));
-  if (task.view.has_prizes()) return most * (1 + kPrizeRounding);
+  most = std::min(most, colour_bound(task, steps));
+  if (open.directed()) most = std::min(most, order_bound(task));
+  if (clock.passed()) return most;
+  const ArrivalTree tree(task);
+  most = std::min(most, fractional_bound(task, tree));
+  if (task.has_prizes()) return most * (1 + kPrizeRounding);
   most = std::floor(most + 1e-9);
-  if (passed(deadline)) return most;
-  if (const auto nodes = Knapsack(task, tree, deadline).most_visited()) {
-    most = std::min(most, *nodes + reachable.prizes[task.start]);  // what was visited before counts again at worst
+  if (clock.passed()) return most;
+  if (const auto nodes = Knapsack(task, tree, clock).most_visited()) {
+    most = std::min(most, *nodes + task.prize(task.start()));  // what was visited before counts again at worst
   }
   return most;
 }

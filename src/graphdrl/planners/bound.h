@@ -14,25 +14,13 @@
 // left for the end, within the budget counts for nothing.
 #pragma once
 
-#include <vector>
-
 #include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
 
 inline constexpr double kKnapsackSums = 2e8;
 
-// The nodes that a walk can visit: reached within the budget, and left for the end.
-struct Reachable {
-  explicit Reachable(const Task& task);
-
-  std::vector<NodeId> nodes;   // the start first
-  std::vector<bool> contains;  // [N]
-  std::vector<double> prizes;  // [N], of first visits: 0 where visited before
-};
-
-// No walk has a higher prize [Plan::prize]. Once the deadline passes, only the sum of prizes, colours and order count.
-// Throws Error where there is no walk at all [check(Task)].
-double max_prize(const Task& task, Deadline deadline = {});
+// No walk has a higher prize [Plan::prize]. Once the clock passes, only the sum of prizes, colours and order count.
+double max_prize(const Task& task, const Clock& clock = {});
 
 }  // namespace graphdrl

@@ -34,8 +34,8 @@ class SearchOutOfReach : public Error {
 // states, never too much time, so that the answer is the same everywhere.
 std::optional<double> exact_prize(const Task& task);
 
-// The optimal walk. Empty where out of reach or past the deadline.
-std::optional<std::vector<NodeId>> exact_walk(const Task& task, Deadline deadline = {});
+// The optimal walk. Empty where out of reach or once the clock passes.
+std::optional<std::vector<NodeId>> exact_walk(const Task& task, const Clock& clock = {});
 
 // Searches as above, and where that is out of reach by branch and cut [LpBound] from another planner's walk, which then
 // need not be the cheapest of those worth the same. Throws SearchOutOfReach where neither ends within its limits. With
@@ -44,7 +44,7 @@ class ExactPlanner final : public Planner {
  public:
   explicit ExactPlanner(std::unique_ptr<Planner> incumbent = nullptr) : incumbent_(std::move(incumbent)) {}
 
-  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+  Plan plan(const Task& task, const Clock& clock = {}) override;
 
  private:
   std::unique_ptr<Planner> incumbent_;

@@ -10,7 +10,7 @@ namespace {
 
 class GeneralSearch {
  public:
-  explicit GeneralSearch(const Task& task, Deadline deadline = {});
+  explicit GeneralSearch(const Task& task, const Clock& clock = {});
 
   // The best walk; empty where it is out of reach, or late.
   std::optional<std::vector<NodeId>> walk();
@@ -46,7 +46,7 @@ class GeneralSearch {
   double cost_to_the_end(const Entry& entry) const;
   std::vector<NodeId> unroll(int index) const;
 
-  Deadline deadline_;
+  Clock clock_;
   SmallWorld world_;
   double limit_;
   bool unit_prizes_;
@@ -56,8 +56,8 @@ class GeneralSearch {
   std::unordered_map<ExactState, double, ExactStateHash> least_spent_;
 };
 
-GeneralSearch::GeneralSearch(const Task& task, Deadline deadline)
-    : deadline_(deadline), world_(task), limit_(task.limit()), unit_prizes_(!task.view.has_prizes()) {
+GeneralSearch::GeneralSearch(const Task& task, const Clock& clock)
+    : clock_(clock), world_(task), limit_(task.limit()), unit_prizes_(!task.has_prizes()) {
   if (!world_.fits()) return;
   const int count = static_cast<int>(world_.nodes.size());
   for (int node = 0; node < count; ++node) {
@@ -196,7 +196,7 @@ std::optional<std::vector<NodeId>> GeneralSearch::walk() {
     }
     if (!beats(entry.most, entry.spent + world_.cost_to_end[entry.state.position])) continue;
     expand(index);
-    if (entries_.size() > kExactMaxStates || passed(deadline_)) return std::nullopt;
+    if (entries_.size() > kExactMaxStates || clock_.passed()) return std::nullopt;
   }
   if (best < 0) return std::nullopt;
   return unroll(best);
@@ -220,8 +220,8 @@ std::vector<NodeId> GeneralSearch::unroll(int index) const {
 
 }  // namespace
 
-std::optional<std::vector<NodeId>> general_exact_walk(const Task& task, Deadline deadline) {
-  return GeneralSearch(task, deadline).walk();
+std::optional<std::vector<NodeId>> general_exact_walk(const Task& task, const Clock& clock) {
+  return GeneralSearch(task, clock).walk();
 }
 
 }  // namespace graphdrl

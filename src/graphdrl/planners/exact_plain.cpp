@@ -15,7 +15,7 @@ struct Optimum {
 
 class PlainSearch {
  public:
-  explicit PlainSearch(const Task& task, Deadline deadline = {}) : deadline_(deadline) {
+  explicit PlainSearch(const Task& task, const Clock& clock = {}) : clock_(clock) {
     SmallWorld world(task);
     fits_ = world.fits();
     nodes_ = std::move(world.nodes);
@@ -29,8 +29,8 @@ class PlainSearch {
   std::optional<std::vector<NodeId>> walk();
 
  private:
-  // Whether the deadline passed; looks at the clock now and then.
-  bool late(std::size_t states) const { return states % 256 == 0 && passed(deadline_); }
+  // Whether the clock passed; looks at the clock now and then.
+  bool late(std::size_t states) const { return states % 256 == 0 && clock_.passed(); }
 
   int gain_of(const ExactState& state) const { return std::popcount(state.visited) - std::popcount(start_.visited); }
 
@@ -41,7 +41,7 @@ class PlainSearch {
   // failures; gives false, and out_of_reach_, after too many.
   bool can_reach(const ExactState& state, int gain, int slack);
 
-  Deadline deadline_;
+  Clock clock_;
   std::vector<NodeId> nodes_;         // by local index
   std::vector<NodeMask> neighbours_;  // likewise
   ExactState start_{};
@@ -143,8 +143,8 @@ std::optional<int> plain_exact_gain(const Task& task) {
   return best ? std::optional(best->gain) : std::nullopt;
 }
 
-std::optional<std::vector<NodeId>> plain_exact_walk(const Task& task, Deadline deadline) {
-  return PlainSearch(task, deadline).walk();
+std::optional<std::vector<NodeId>> plain_exact_walk(const Task& task, const Clock& clock) {
+  return PlainSearch(task, clock).walk();
 }
 
 }  // namespace graphdrl

@@ -46,10 +46,10 @@ struct SmallWorld {
 // For tasks where every edge costs 1, every prize is 1 and the walk may end anywhere. States are expanded in order of
 // waste. Empty where out of reach, or late.
 std::optional<int> plain_exact_gain(const Task& task);  // nodes first visited
-std::optional<std::vector<NodeId>> plain_exact_walk(const Task& task, Deadline deadline);
+std::optional<std::vector<NodeId>> plain_exact_walk(const Task& task, const Clock& clock);
 
 // For any task. States are expanded in order of what they can be worth at most: what was visited, and as much of the
 // rest as its cheapest arrivals allow. Empty where out of reach, or late.
-std::optional<std::vector<NodeId>> general_exact_walk(const Task& task, Deadline deadline);
+std::optional<std::vector<NodeId>> general_exact_walk(const Task& task, const Clock& clock);
 
 }  // namespace graphdrl

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/planners/baselines.h"
@@ -24,15 +23,6 @@ SharedExplorer builtin_explorer() {
   return explorer;
 }
 
-bool is_explorer_file(const std::string& path) {
-  const auto description = policy_description(Safetensors::read(path));
-  return description.is_object() && description.value("kind", nlohmann::json()) == "explorer";
-}
-
-SharedExplorer read_explorer_file(const std::string& path) {
-  return std::make_shared<const ExplorerParameters>(read_explorer(Safetensors::read(path)));
-}
-
 void ExplorerScorer::shortfalls(const ExplorerBatch& batch, std::vector<float>& shortfall) {
   shortfall.resize(static_cast<std::size_t>(batch.visit_count()));
   network_.forward(batch, shortfall);
@@ -41,37 +31,38 @@ void ExplorerScorer::shortfalls(const ExplorerBatch& batch, std::vector<float>& 
   }
 }
 
-bool ExplorerScorer::score(const View& view, std::span<const ExplorationState> states,
-                           std::vector<ScoredVisit>& visits) {
+bool ExplorerScorer::score(std::span<const Exploration> states, std::vector<ScoredVisit>& visits) {
   visits.clear();
   batch_.clear();
   bool overlooked = false;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    for (const FirstVisit& visit : encoder_.append(view, states[i], kExplorerScope, batch_)) {
+    for (const FirstVisit& visit : encoder_.append(states[i], kExplorerScope, batch_)) {
       visits.push_back({.state = static_cast<int>(i), .visit = visit, .score = 0});
     }
     overlooked = overlooked || encoder_.overlooked();
   }
   if (visits.empty()) return overlooked;
   shortfalls(batch_, shortfall_);
-  const double unit = view.open().mean_cost();
+  const double unit = states[0].view().open().mean_cost();
   for (std::size_t i = 0; i < visits.size(); ++i) {
     // Cost up to now counts as cost to come does.
     const int state = visits[i].state;
-    visits[i].score = double{shortfall_[i]} - batch_.ceiling[state] - kWorthOfCost * states[state].spendable / unit;
+    visits[i].score = double{shortfall_[i]} - batch_.ceiling[state] - kWorthOfCost * states[state].spendable() / unit;
   }
   return overlooked;
 }
 
-std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
+std::size_t ExplorerScorer::choose(const Task& task, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
+  const View& view = task.view();
   shortfalls(batch, shortfall_);
   const double unseen = batch.unseen[0];
   const double unit = view.open().mean_cost();
   const double mean_prize = view.total_prize() / view.valid_count();
   for (std::size_t i = 0; i < visits.size(); ++i) {
     shortfall_[i] += static_cast<float>(kWorthOfBudget * unseen * visits[i].cost / unit);
-    if (view.has_prizes() && mean_prize > 0)
-      shortfall_[i] -= static_cast<float>(view.prize(visits[i].node) / mean_prize);
+    if (task.has_prizes() && mean_prize > 0) {
+      shortfall_[i] -= static_cast<float>(task.prize(visits[i].node) / mean_prize);
+    }
   }
   // Where edges lead one way, the nearest may be a trap.
   const double indifference = view.open().directed() ? 0 : kIndifference * unseen * unseen;
@@ -80,51 +71,31 @@ std::size_t ExplorerScorer::choose(const View& view, const ExplorerBatch& batch,
   return static_cast<std::size_t>(choice - shortfall_.begin());
 }
 
-Plan ExplorerPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  check(task);
-  if (!deadline) return walk_until(task, {}, report);
-  return plan_by_deadline(task, deadline, [&](Deadline until) { return walk_until(task, until, report); });
+Plan ExplorerPlanner::plan(const Task& task, const Clock& clock) {
+  if (!clock.has_deadline()) return walk_until(task, clock);
+  return plan_by_deadline(task, clock, [&](const Clock& until) { return walk_until(task, until); });
 }
 
-// Where all first visits are too far off to be looked at; kNoNode where there is none.
-FirstVisit ExplorerPlanner::nearest_first_visit(const View& view, const ExplorationState& state) {
-  FirstVisit nearest{.node = kNoNode, .cost = 0};
-  search_.run(view.open(), state.position, state.spendable, [&](NodeId node, double cost) {
-    if (state.visited.contains(node)) return NearestFirst::Next::kThrough;
-    if (cost + state.cost_to_end(node) > state.spendable) return NearestFirst::Next::kPast;
-    nearest = {node, cost};
-    return NearestFirst::Next::kEnd;
-  });
-  return nearest;
-}
-
-Plan ExplorerPlanner::walk_until(const Task& task, Deadline deadline, const Report& report) {
-  Ticker ticker(deadline, report, kChoicesPerTick);
-  NodeSet visited = task.visited_before();
-  const CostToEnd to_end(task);
-  ExplorationState state{.visited = visited,
-                         .visited_count = visited.count(),
-                         .position = task.start,
-                         .spendable = task.limit(),
-                         .to_end = &to_end};
+Plan ExplorerPlanner::walk_until(const Task& task, const Clock& clock) {
+  Ticker ticker(clock, kChoicesPerTick);
+  NodeSet ground = task.ground();
+  Exploration state(task, ground);
   ExplorerBatch batch;
   std::vector<NodeId> first_visits;
-  bool optimal = task.view.open().straight_ways_suffice();
+  bool optimal = task.view().open().straight_ways_suffice();
   do {
     batch.clear();
-    const std::span<const FirstVisit> visits = scorer_->encoder().append(task.view, state, kExplorerScope, batch);
+    const std::span<const FirstVisit> visits = scorer_->encoder().append(state, kExplorerScope, batch);
     const bool overlooked = scorer_->encoder().overlooked();
-    const FirstVisit choice = !visits.empty() ? visits[scorer_->choose(task.view, batch, visits)]
-                              : overlooked    ? nearest_first_visit(task.view, state)
-                                              : FirstVisit{.node = kNoNode, .cost = 0};
+    // Where all first visits are too far off to be looked at, the nearest.
+    const FirstVisit choice = !visits.empty() ? visits[scorer_->choose(task, batch, visits)]
+                              : overlooked    ? state.nearest_first_visit(search_)
+                                              : FirstVisit();
     if (choice.node == kNoNode) return plan_of_walk(task, walk_through(task, first_visits, search_), optimal);
     optimal = optimal && visits.size() == 1 && !overlooked;
     first_visits.push_back(choice.node);
-    visited.insert(choice.node);
-    ++state.visited_count;
-    state.position = choice.node;
-    state.spendable -= choice.cost;
-  } while (!ticker.tick(state.visited_count));
+    state.make(choice, ground);
+  } while (!ticker.tick(state.ground_count()));
   return plan_of_walk(task, walk_through(task, first_visits, search_));
 }
 

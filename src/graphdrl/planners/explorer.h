@@ -18,12 +18,6 @@ using SharedExplorer = std::shared_ptr<const ExplorerParameters>;
 std::string_view builtin_explorer_file();
 SharedExplorer builtin_explorer();
 
-// Whether a policy file holds an explorer. Throws Error where it holds no policy.
-bool is_explorer_file(const std::string& path);
-
-// An explorer from a policy file. Throws Error.
-SharedExplorer read_explorer_file(const std::string& path);
-
 // An explorer at work: its network, and scratch memory for states of any world. One thread at a time.
 class ExplorerScorer final : public FirstVisitScorer {
  public:
@@ -31,10 +25,10 @@ class ExplorerScorer final : public FirstVisitScorer {
     network_.set_parameters(*parameters_);
   }
 
-  // A score is the shortfall less the state's ceiling and the worth of what is left to spend: how many nodes will be
-  // left, and what the whole walk costs, but for what all states share.
+  //   score = shortfall - ceiling - kWorthOfCost · spendable / mean edge cost: how many nodes will be left and what the
+  // whole walk costs, but for what all states share.
   // Throws Error where the network's weights are so large that it gives no number.
-  bool score(const View& view, std::span<const ExplorationState> states, std::vector<ScoredVisit>& visits) override;
+  bool score(std::span<const Exploration> states, std::vector<ScoredVisit>& visits) override;
   int most_states() const override { return 16; }  // a few milliseconds
   int most_visits() const override { return kExplorerScope; }
 
@@ -47,7 +41,7 @@ class ExplorerScorer final : public FirstVisitScorer {
   //   score = shortfall - prize / mean prize (where there are prizes) + 0.5 u cost / mean edge cost.
   // Takes the nearest whose score is at most the least score + 0.8 u²; where edges lead one way, the least score. So
   // the less the network sees, the less its word counts.
-  std::size_t choose(const View& view, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
+  std::size_t choose(const Task& task, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
 
   ExplorerEncoder& encoder() { return encoder_; }
 
@@ -65,11 +59,10 @@ class ExplorerPlanner final : public Planner {
  public:
   explicit ExplorerPlanner(std::shared_ptr<ExplorerScorer> scorer) : scorer_(std::move(scorer)) {}
 
-  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+  Plan plan(const Task& task, const Clock& clock = {}) override;
 
  private:
-  Plan walk_until(const Task& task, Deadline deadline, const Report& report);
-  FirstVisit nearest_first_visit(const View& view, const ExplorationState& state);
+  Plan walk_until(const Task& task, const Clock& clock);
 
   std::shared_ptr<ExplorerScorer> scorer_;
   NearestFirst search_;

@@ -16,16 +16,16 @@ constexpr int kFewestIterations = 2'000;    // whatever the number of rows
 constexpr double kRounding = 1e-11;         // relative, of the sums that make a bound
 constexpr double kInfeasibleMargin = 1e-6;  // by which weighted rows must be missed
 
-// Ends the simplex method at the deadline.
-class DeadlineHandler final : public ClpEventHandler {
+// Ends the simplex method once the clock passes.
+class ClockHandler final : public ClpEventHandler {
  public:
   int event(Event event) override {
     constexpr int kGoOn = -1;
-    return event == endOfIteration && passed(deadline) ? 0 : kGoOn;
+    return event == endOfIteration && clock.passed() ? 0 : kGoOn;
   }
-  ClpEventHandler* clone() const override { return new DeadlineHandler(*this); }
+  ClpEventHandler* clone() const override { return new ClockHandler(*this); }
 
-  Deadline deadline;
+  Clock clock;
 };
 
 }  // namespace
@@ -38,7 +38,7 @@ LinearProgram::LinearProgram() : solver_(std::make_unique<Solver>()) {
   ClpSimplex& model = solver_->model;
   model.setLogLevel(0);
   model.setOptimizationDirection(1);  // minimises the negative objective
-  const DeadlineHandler handler;
+  const ClockHandler handler;
   model.passInEventHandler(&handler);
 }
 
@@ -80,9 +80,9 @@ void LinearProgram::set_bounds(int column, double lower, double upper) {
   solver_->model.setColumnBounds(column, lower, upper);
 }
 
-LinearProgram::Outcome LinearProgram::solve(Deadline deadline, double work) {
+LinearProgram::Outcome LinearProgram::solve(const Clock& clock, double work) {
   ClpSimplex& model = solver_->model;
-  static_cast<DeadlineHandler*>(model.eventHandler())->deadline = deadline;
+  static_cast<ClockHandler*>(model.eventHandler())->clock = clock;
   const int size = model.numberRows() + model.numberColumns();
   const int most_iterations = static_cast<int>(
       std::min<double>(std::max(kFewestIterations, kIterationsPerRow * model.numberRows()), 1 + work / size));

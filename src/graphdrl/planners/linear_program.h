@@ -48,8 +48,8 @@ class LinearProgram {
   void remove_slack_rows(int first);
   void set_bounds(int column, double lower, double upper);
 
-  // Dual simplex, until a deadline or so much work more [work()], about.
-  Outcome solve(Deadline deadline, double work = kUnbounded);
+  // Dual simplex, until the clock passes or so much work more [work()], about.
+  Outcome solve(const Clock& clock, double work = kUnbounded);
 
   // The bound after so many iterations with other bounds of a column; kUnbounded below zero where there is no solution.
   // Leaves everything as the last solve did. REQUIRES: that solve was optimal.

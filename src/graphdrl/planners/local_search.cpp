@@ -14,8 +14,6 @@
 namespace graphdrl {
 namespace {
 
-using std::chrono::steady_clock;
-
 constexpr int kChains = 2;                  // without a deadline, whatever the number of threads
 constexpr double kStartShare = 0.05;        // of the time left, for each walk to start with but the first two
 constexpr double kExplorerVisitS = 0.4e-3;  // a first visit of the explorer: it is not begun where it would not end
@@ -24,7 +22,9 @@ constexpr double kBoundShare = 0.05;        // of the time left, for the knapsac
 constexpr double kRootWork = 1e7;           // without a deadline, of the linear program: at most about 0.3 s
 constexpr double kBranchWork = 2e6;         // likewise, of branching once the search is over
 constexpr double kStepS = 5e-6;             // a step takes about as long
-constexpr double kLongTime = 4;             // in searches of so many steps: then branching has as much
+// Branch only if the time left is over 4 such searches; branching then gets one search's time.
+constexpr double kLongTime = 4;
+constexpr double kWalkTime = 2;  // of the time that a walk of all targets takes, kept for the last one
 // So many steps at most with 10,000 targets, and fewer by the square of their number beyond. In caves of 512x512 cells
 // at 0.5x a step takes several milliseconds, and ten minutes of steps visit no more than none.
 constexpr double kDearSteps = 1e6;
@@ -37,51 +37,37 @@ constexpr double kLastShare = 0.1;  // of the schedule, for the last run from th
 constexpr double kWarm = 0.6;       // of the way from the first temperature to the last: where children begin
 constexpr int kStepsPerLook = 16;   // at the clock; a step takes some microseconds
 
-Deadline share_of(Deadline deadline, double share) {
-  if (!deadline) return std::nullopt;
-  const auto now = steady_clock::now();
-  return now + std::chrono::duration_cast<steady_clock::duration>(share * (*deadline - now));
-}
-
-double seconds_to(std::chrono::steady_clock::time_point time) {
-  return std::chrono::duration<double>(time - steady_clock::now()).count();
-}
-
-bool is_met(double bound, double prize) {
-  return prize >= bound * (1 - kPrizeRounding);
-}
-
 // What a walk makes for: its targets in the order of first visits, and the costs of the ways to each, and to the end.
-struct Stops {
+struct Tour {
   std::vector<int> order;
   std::vector<double> links;
   double prize;
 };
 
-Stops stops_of(const Task& task, const Targets& targets, const Plan& plan) {
+Tour tour_of(const Task& task, const Targets& targets, const Plan& plan) {
   const std::vector<NodeId>& walk = plan.walk;
-  Stops stops{.order = {}, .links = {}, .prize = plan.prize};
+  Tour tour{.order = {}, .links = {}, .prize = plan.prize};
   std::vector<char> taken(targets.end());
   double cost = 0;
   for (std::size_t i = 1; i < walk.size(); ++i) {
-    const Graph& open = task.view.open();
+    const Graph& open = task.view().open();
     cost += open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
     const int target = targets.target_of(walk[i]);
     if (target <= 0 || taken[target] != 0) continue;
     taken[target] = 1;
-    stops.order.push_back(target);
-    stops.links.push_back(cost);
+    tour.order.push_back(target);
+    tour.links.push_back(cost);
     cost = 0;
   }
-  stops.links.push_back(task.ends_anywhere() ? 0 : cost);
-  return stops;
+  tour.links.push_back(task.ends_anywhere() ? 0 : cost);
+  return tour;
 }
 
 // The walk that makes for these targets, each by a cheapest way, and for the end.
 std::vector<NodeId> walk_of(const Task& task, const Targets& targets, std::span<const int> order) {
   NearestFirst search;
-  std::vector<NodeId> walk = {task.start};
-  for (const int target : order) append_way_to(task.view, targets.node(target), walk, search);
+  std::vector<NodeId> walk = {task.start()};
+  for (const int target : order) append_way_to(task.view(), targets.node(target), walk, search);
   append_way_to_end(task, walk, search);
   return walk;
 }
@@ -90,18 +76,13 @@ std::vector<NodeId> walk_of(const Task& task, const Targets& targets, std::span<
 class CoolingSchedule {
  public:
   // steps: 0 where the deadline alone counts.
-  CoolingSchedule(std::int64_t steps, Deadline deadline) : steps_(steps), deadline_(deadline) {
-    if (deadline_) time_ = std::chrono::duration<double>(*deadline_ - begin_).count();
-  }
+  CoolingSchedule(std::int64_t steps, const Clock& clock) : steps_(steps), clock_(clock), time_(clock.seconds_left()) {}
 
   // The share that is over after so many steps.
   double done(std::int64_t steps) const {
     double share = steps_ > 0 ? static_cast<double>(steps) / static_cast<double>(steps_) : 0;
-    if (deadline_) {
-      const double elapsed = std::chrono::duration<double>(steady_clock::now() - begin_).count();
-      share = std::max(share, time_ > 0 ? elapsed / time_ : 1);
-    }
-    return planning_stopped() ? 1 : share;
+    if (clock_.has_deadline()) share = std::max(share, time_ > 0 ? 1 - clock_.seconds_left() / time_ : 1);
+    return clock_.stopped() ? 1 : share;
   }
   // How many steps to take before the next look at it, after so many.
   int steps_to_look(std::int64_t steps) const {
@@ -109,14 +90,13 @@ class CoolingSchedule {
   }
 
  private:
-  steady_clock::time_point begin_ = steady_clock::now();
   std::int64_t steps_;
-  Deadline deadline_;
-  double time_ = 0;
+  Clock clock_;
+  double time_;  // seconds in all
 };
 
-// Chains of one task: what they share.
-struct Anneal {
+// What the chains of one task share.
+struct Chains {
   const Task& task;
   const Targets& targets;
   const CoolingSchedule& schedule;
@@ -131,13 +111,13 @@ struct Anneal {
   };
 
   // One run. steps: taken by the chain up to now.
-  Stops run(Annealing& annealing, const Part& part, std::int64_t& steps) const {
-    for (double done = schedule.done(steps); done < part.last && !is_met(bound, annealing.best_prize());
+  Tour run(Annealing& annealing, const Part& part, std::int64_t& steps) const {
+    for (double done = schedule.done(steps); done < part.last && !meets(annealing.best_prize(), bound);
          done = schedule.done(steps)) {
       const double share = std::clamp((done - part.first) / (part.last - part.first), 0.0, 1.0);
       const double progress = part.progress + (1 - part.progress) * share;
       const int count = schedule.steps_to_look(steps);
-      for (int i = 0; i < count && !is_met(bound, annealing.best_prize()); ++i) annealing.step(progress);
+      for (int i = 0; i < count && !meets(annealing.best_prize(), bound); ++i) annealing.step(progress);
       steps += count;
       tell(annealing.best_visits());
     }
@@ -145,31 +125,31 @@ struct Anneal {
     return {order, annealing.best_links(), annealing.best_prize()};
   }
 
-  Annealing begin(const Stops& start, std::uint64_t seed) const {
+  Annealing begin(const Tour& start, std::uint64_t seed) const {
     Annealing annealing(targets, task.limit(), seed);
     annealing.start(start.order, start.links);
     return annealing;
   }
 
   // Where the choice matters, a population; else one run.
-  Stops chain(const Stops& start, std::uint64_t seed) const {
+  Tour chain(const Tour& start, std::uint64_t seed) const {
     std::int64_t steps = 0;
     Annealing annealing = begin(start, derive_seed(seed, 0));
     if (!Annealing::is_selective(targets, start.prize)) return run(annealing, {.first = 0, .last = 1}, steps);
-    const Stops best = best_of_population(start, seed, steps);
+    const Tour best = best_of_population(start, seed, steps);
     annealing.start(best.order, best.links);
     return run(annealing, {.first = 1 - kLastShare, .last = 1, .progress = kWarm}, steps);
   }
 
   // Short runs, then children of any two: each takes the place of the worst route, if it is better and new.
-  Stops best_of_population(const Stops& start, std::uint64_t seed, std::int64_t& steps) const {
-    std::vector<Stops> routes(kPopulation, start);
+  Tour best_of_population(const Tour& start, std::uint64_t seed, std::int64_t& steps) const {
+    std::vector<Tour> routes(kPopulation, start);
     for (int i = 0; i < kPopulation && schedule.done(steps) < kFirstShare; ++i) {
       Annealing annealing = begin(start, derive_seed(seed, 1, static_cast<std::uint64_t>(i)));
       const double first = kFirstShare * i / kPopulation;
       routes[i] = run(annealing, {.first = first, .last = first + kFirstShare / kPopulation}, steps);
     }
-    const auto by_prize = [](const Stops& a, const Stops& b) { return a.prize < b.prize; };
+    const auto by_prize = [](const Tour& a, const Tour& b) { return a.prize < b.prize; };
     Rng rng(derive_seed(seed, 2));
     constexpr double kShare = (1 - kFirstShare - kLastShare) / kChildren;
     for (int i = 0; i < kChildren; ++i) {
@@ -179,9 +159,9 @@ struct Anneal {
       const auto other = (one + 1 + rng.below(kPopulation - 1)) % kPopulation;
       Annealing annealing = begin(routes[one], derive_seed(seed, 3, static_cast<std::uint64_t>(i)));
       annealing.recombine(routes[other].order);
-      Stops child = run(annealing, {.first = first, .last = first + kShare, .progress = kWarm}, steps);
+      Tour child = run(annealing, {.first = first, .last = first + kShare, .progress = kWarm}, steps);
       const auto worst = std::min_element(routes.begin(), routes.end(), by_prize);
-      const bool is_new = std::none_of(routes.begin(), routes.end(), [&](const Stops& route) {
+      const bool is_new = std::none_of(routes.begin(), routes.end(), [&](const Tour& route) {
         return route.order == child.order ||
                std::equal(route.order.rbegin(), route.order.rend(), child.order.begin(), child.order.end());
       });
@@ -201,86 +181,90 @@ std::int64_t default_iterations(int targets) {
   return std::max<std::int64_t>(std::min(3 * count * count, most), 10'000);
 }
 
-Plan LocalSearchPlanner::plan(const Task& task, Deadline deadline, const Report& report) {
-  NearestPlanner nearest;
-  Plan best = nearest.plan(task, deadline, report);
-  const Targets targets(task, share_of(deadline, kTargetsShare));
-  best.bound = std::min(max_prize(task, share_of(deadline, kBoundShare)), targets.total_prize());
+Plan LocalSearchPlanner::plan(const Task& task, const Clock& clock) {
+  return search(task, NearestPlanner().plan(task, clock), clock);
+}
+
+Plan LocalSearchPlanner::plan_from(const Task& task, Plan known, const Clock& clock) {
+  known.bound = kNoLimit;
+  return search(task, better_of(std::move(known), NearestPlanner().plan(task, clock)), clock);
+}
+
+// best: the best walk up to now.
+Plan LocalSearchPlanner::search(const Task& task, Plan best, const Clock& clock) {
+  const Targets targets(task, clock.share(kTargetsShare));
+  best.bound = std::min(max_prize(task, clock.share(kBoundShare)), targets.total_prize());
   std::unique_ptr<LpBound> lp;
-  if (!is_met(best.bound, best.prize) && !passed(deadline)) lp = make_lp_bound(task, best.bound);
+  if (!meets(best.prize, best.bound) && !clock.passed()) lp = make_lp_bound(task, best.bound);
   if (lp != nullptr) {
-    lp->cut(best.prize, {.deadline = share_of(deadline, kBoundShare), .work = deadline ? kNoLimit : kRootWork});
+    lp->cut(best.prize, {.clock = clock.share(kBoundShare), .work = clock.has_deadline() ? kNoLimit : kRootWork});
     best.bound = std::min(best.bound, lp->bound());
   }
-  best = best_start(task, targets, std::move(best), deadline, report);
-  const auto search = [&](std::int64_t steps) {
-    if (is_met(best.bound, best.prize) || !targets.complete() || targets.end() <= 1 || passed(deadline)) return;
-    best = improve(task, targets, std::move(best), steps, deadline, report);
+  best = best_start(task, targets, std::move(best), clock);
+  const auto search_for = [&](std::int64_t steps) {
+    if (meets(best.prize, best.bound) || !targets.complete() || targets.end() <= 1 || clock.passed()) return;
+    best = anneal(task, targets, std::move(best), steps, clock);
   };
   const auto branch = [&](const LpBound::Effort& effort) {
-    if (lp == nullptr || is_met(best.bound, best.prize)) return;
+    if (lp == nullptr || meets(best.prize, best.bound)) return;
     lp->branch(best.prize, effort);
-    graphdrl::improve(*lp, task, best);
+    improve(*lp, task, best);
   };
   std::int64_t steps = default_iterations(targets.end());
-  if (!deadline || options_.iterations > 0) {
-    search(options_.iterations > 0 ? options_.iterations : steps);
-    branch({.deadline = deadline, .work = kBranchWork});
+  if (!clock.has_deadline() || options_.iterations > 0) {
+    search_for(options_.iterations > 0 ? options_.iterations : steps);
+    branch({.clock = clock, .work = kBranchWork});
   } else {
     // Both in turn, longer and longer, while there is time for more than the next turn: the last search has the rest.
-    while (lp != nullptr && !is_met(best.bound, best.prize) &&
-           seconds_to(*deadline) > kLongTime * kStepS * static_cast<double>(steps)) {
-      const auto begin = steady_clock::now();
-      search(steps);
-      branch({.deadline = std::min(*deadline, steady_clock::now() + (steady_clock::now() - begin))});
+    while (lp != nullptr && !meets(best.prize, best.bound) &&
+           clock.seconds_left() > kLongTime * kStepS * static_cast<double>(steps)) {
+      const Stopwatch watch;
+      search_for(steps);
+      branch({.clock = clock.at_most(watch.seconds())});
       steps *= 2;
     }
-    search(0);
+    search_for(0);
   }
-  best.optimal = best.optimal || is_met(best.bound, best.prize);
+  best.settle(best.bound);
   return best;
 }
 
-// The best of all walks to begin with, the nearest rule's first.
-Plan LocalSearchPlanner::best_start(const Task& task, const Targets& targets, Plan best, Deadline deadline,
-                                    const Report& report) {
+// The best of all walks to begin with.
+Plan LocalSearchPlanner::best_start(const Task& task, const Targets& targets, Plan best, const Clock& clock) {
   const double bound = best.bound;
   DepthFirstPlanner depth_first;
   BeamPlanner beam{BeamOptions()};
-  const std::chrono::duration<double> explorer_time(kExplorerVisitS * targets.end());
   for (Planner* const planner : std::initializer_list<Planner*>{&depth_first, &beam, explorer_.get()}) {
-    if (is_met(bound, best.prize) || passed(deadline)) break;
-    if (planner == &beam && !beam_fits(task.view, BeamOptions())) continue;
-    const Deadline until = share_of(deadline, kStartShare);
-    if (planner == explorer_.get() && until && steady_clock::now() + explorer_time > *until) continue;
-    best = better_of(std::move(best), planner->plan(task, until, report));
+    if (meets(best.prize, bound) || clock.passed()) break;
+    if (planner == &beam && !beam_fits(task.view(), BeamOptions())) continue;
+    const Clock until = clock.share(kStartShare);
+    if (planner == explorer_.get() && kExplorerVisitS * targets.end() > until.seconds_left()) continue;
+    best = better_of(std::move(best), planner->plan(task, until));
     if (best.optimal) break;
   }
   best.bound = best.optimal ? best.prize : bound;
   return best;
 }
 
-// In so many steps, or until the deadline where that is 0, or both.
-Plan LocalSearchPlanner::improve(const Task& task, const Targets& targets, Plan best, std::int64_t steps,
-                                 Deadline deadline, const Report& report) {
-  const Stops start = stops_of(task, targets, best);
+// In so many steps, or until the clock passes where that is 0, or both.
+Plan LocalSearchPlanner::anneal(const Task& task, const Targets& targets, Plan best, std::int64_t steps, Clock clock) {
+  const Tour start = tour_of(task, targets, best);
   // What comes after the last step takes about as long as this.
-  const auto before = steady_clock::now();
+  const Stopwatch watch;
   walk_of(task, targets, start.order);
-  if (deadline) *deadline -= 2 * (steady_clock::now() - before);
-  const int chains = deadline ? threads() : kChains;
-  const CoolingSchedule schedule((steps + chains - 1) / chains, deadline);
+  clock = clock.sooner(kWalkTime * watch.seconds());
+  const int count = clock.has_deadline() ? threads() : kChains;
+  const CoolingSchedule schedule((steps + count - 1) / count, clock);
   const auto caller = std::this_thread::get_id();
-  const int visited = task.visited_before().count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
-  const Anneal anneal{
+  const int visited = task.ground_count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
+  const Chains chains{
       .task = task, .targets = targets, .schedule = schedule, .bound = best.bound, .tell = [&](int visits) {
-        if (!report || std::this_thread::get_id() != caller) return;
-        report({.visited = visited + visits, .bound = best.bound});
+        if (std::this_thread::get_id() == caller) clock.tell({.visited = visited + visits, .bound = best.bound});
       }};
-  std::vector<Plan> found(chains);
-  parallel_for(chains, [&](int chain) {
-    const Stops stops = anneal.chain(start, derive_seed(options_.seed, static_cast<std::uint64_t>(chain)));
-    found[chain] = plan_of_walk(task, walk_of(task, targets, stops.order));
+  std::vector<Plan> found(count);
+  parallel_for(count, [&](int chain) {
+    const Tour tour = chains.chain(start, derive_seed(options_.seed, static_cast<std::uint64_t>(chain)));
+    found[chain] = plan_of_walk(task, walk_of(task, targets, tour.order));
   });
   const double bound = best.bound;
   for (Plan& plan : found) {

@@ -12,7 +12,8 @@ namespace graphdrl {
 inline constexpr std::int64_t kMostIterations = 1'000'000'000'000;
 
 struct LocalSearchOptions {
-  std::int64_t iterations = 0;  // in all; 0: as many as default_iterations() says, or without end until the deadline
+  std::int64_t iterations =
+      0;  // in all; 0: as many as default_iterations() says, or without end until the clock passes
   std::uint64_t seed = 1;
 };
 
@@ -30,13 +31,14 @@ class LocalSearchPlanner final : public Planner {
   LocalSearchPlanner(LocalSearchOptions options, std::unique_ptr<Planner> explorer)
       : options_(options), explorer_(std::move(explorer)) {}
 
-  Plan plan(const Task& task, Deadline deadline = {}, const Report& report = {}) override;
+  Plan plan(const Task& task, const Clock& clock = {}) override;
+  Plan plan_from(const Task& task, Plan known, const Clock& clock = {}) override;
   bool bounds() const override { return true; }
 
  private:
-  Plan best_start(const Task& task, const Targets& targets, Plan best, Deadline deadline, const Report& report);
-  Plan improve(const Task& task, const Targets& targets, Plan best, std::int64_t steps, Deadline deadline,
-               const Report& report);
+  Plan search(const Task& task, Plan best, const Clock& clock);
+  Plan best_start(const Task& task, const Targets& targets, Plan best, const Clock& clock);
+  Plan anneal(const Task& task, const Targets& targets, Plan best, std::int64_t steps, Clock clock);
 
   LocalSearchOptions options_;
   std::unique_ptr<Planner> explorer_;

@@ -58,7 +58,7 @@ class BranchAndCut final : public LpBound {
     return effort.work - static_cast<double>(relaxation_.work() - before);
   }
   bool spent(const Effort& effort, std::int64_t before) const {
-    return passed(effort.deadline) || work_left(effort, before) <= 0;
+    return effort.clock.passed() || work_left(effort, before) <= 0;
   }
   void apply(const std::vector<Change>& changes);
   void fix_by_reduced_costs(std::vector<Change>& changes);
@@ -91,12 +91,12 @@ void BranchAndCut::cut(double prize, Effort effort) {
   const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
   double last = kNoLimit;
   for (int tired = 0; tired < kPatience && !beaten(bound_) && !spent(effort, before);) {
-    const Outcome outcome = program().solve(effort.deadline, work_left(effort, before));
+    const Outcome outcome = program().solve(effort.clock, work_left(effort, before));
     bound_ = std::min(bound_, rounded(program().bound()));
     if (outcome != Outcome::kOptimal) break;
     const bool falls = last - program().bound() >= kLeastFall * scale;
     if (falls) relaxation_.remove_slack_rows();
-    if (relaxation_.separate(effort.deadline) == 0) break;
+    if (relaxation_.separate(effort.clock) == 0) break;
     tired = falls ? 0 : tired + 1;
     last = std::min(last, program().bound());
   }
@@ -131,7 +131,8 @@ void BranchAndCut::fix_by_reduced_costs(std::vector<Change>& changes) {
 void BranchAndCut::take_walk() {
   std::vector<NodeId> walk = relaxation_.walk();
   const Plan plan = plan_of_walk(task_, walk);
-  if (plan.cost > task_.limit() || (!task_.ends_anywhere() && walk.back() != task_.end) || plan.prize <= prize_) return;
+  if (plan.cost > task_.limit() || (!task_.ends_anywhere() && walk.back() != task_.end()) || plan.prize <= prize_)
+    return;
   prize_ = plan.prize;
   walk_ = std::move(walk);
 }
@@ -143,7 +144,7 @@ Outcome BranchAndCut::solve_part(Part& part, const Effort& effort, std::int64_t 
   double last = kNoLimit;
   for (int round = 0;; ++round) {
     if (spent(effort, before)) return Outcome::kStopped;
-    const Outcome outcome = program().solve(effort.deadline, work_left(effort, before));
+    const Outcome outcome = program().solve(effort.clock, work_left(effort, before));
     if (outcome == Outcome::kInfeasible) part.bound = -kNoLimit;
     if (outcome == Outcome::kInfeasible) return outcome;
     part.estimate = std::min(part.estimate, program().bound());
@@ -153,7 +154,7 @@ Outcome BranchAndCut::solve_part(Part& part, const Effort& effort, std::int64_t 
       if (!relaxation_.integral()) return outcome;
     }
     last = part.estimate;
-    if (relaxation_.separate(effort.deadline) == 0) return outcome;
+    if (relaxation_.separate(effort.clock) == 0) return outcome;
   }
 }
 
@@ -204,8 +205,7 @@ void BranchAndCut::branch(double prize, Effort effort) {
 }  // namespace
 
 std::unique_ptr<LpBound> make_lp_bound(const Task& task, double bound) {
-  check(task);
-  if (task.view.open().edge_count() > kMostEdges) return nullptr;
+  if (task.view().open().edge_count() > kMostEdges) return nullptr;
   return std::make_unique<BranchAndCut>(task, bound);
 }
 

@@ -19,10 +19,10 @@ class LpBound {
  public:
   virtual ~LpBound() = default;
 
-  // Until when to work: a deadline, and so much work [LinearProgram::work(), and flows likewise]. The result depends on
-  // the work alone where there is no deadline.
+  // Until when to work: a clock, and so much work [LinearProgram::work(), and flows likewise]. Without a deadline the
+  // result depends on the work alone.
   struct Effort {
-    Deadline deadline = {};
+    Clock clock = {};
     double work = kNoLimit;
   };
 
@@ -31,24 +31,22 @@ class LpBound {
   // Goes on from there by branching, until a walk is optimal or the effort is spent.
   virtual void branch(double prize, Effort effort) = 0;
 
-  // No walk has a higher prize; not below the prizes told. Where prizes do not add up in steps, one may have a share of
-  // kBoundMargin more.
+  // At least every prize passed in. No walk has a higher prize; where prizes have no common step, one may exceed it by
+  // kBoundMargin, relative.
   static constexpr double kBoundMargin = 1e-9;
   virtual double bound() const = 0;
   // A walk that branching found, better than any it was told of, or empty.
   virtual const std::vector<NodeId>& walk() const = 0;
 };
 
-// bound: one known. Empty where the graph has too many edges, or in a build without CLP.
-// Throws Error where there is no walk at all [check(Task)].
+// bound: one known. Null where the graph has too many edges, or in a build without CLP.
 std::unique_ptr<LpBound> make_lp_bound(const Task& task, double bound);
 
 // Puts the bound and the walk, where it has one, into a plan that is not as good.
 inline void improve(const LpBound& lp, const Task& task, Plan& plan) {
   const double bound = std::min(plan.bound, lp.bound());
   if (!lp.walk().empty()) plan = better_of(std::move(plan), plan_of_walk(task, lp.walk()));
-  plan.bound = bound;
-  plan.optimal = plan.optimal || plan.prize >= bound * (1 - kPrizeRounding);
+  plan.settle(bound);
 }
 
 // Whether this build has CLP.

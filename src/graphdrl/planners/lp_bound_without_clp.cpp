@@ -3,8 +3,7 @@
 
 namespace graphdrl {
 
-std::unique_ptr<LpBound> make_lp_bound(const Task& task, double) {
-  check(task);
+std::unique_ptr<LpBound> make_lp_bound(const Task& /*task*/, double) {
   return nullptr;
 }
 

@@ -23,9 +23,9 @@ const PaperFeatureEncoder& PaperPolicy::encoder_for(const View& view) {
 void PaperPolicy::q_values(std::span<const Observation> observations, std::span<float> q) {
   while (!observations.empty()) {
     std::size_t count = 1;
-    std::int64_t nodes = observations[0].view->graph().node_count();
+    std::int64_t nodes = observations[0].view().node_count();
     while (count < observations.size()) {
-      nodes += observations[count].view->graph().node_count();
+      nodes += observations[count].view().node_count();
       if (nodes > kMaxBatchNodes) break;
       ++count;
     }
@@ -40,21 +40,21 @@ void PaperPolicy::q_values_of_block(std::span<const Observation> observations, s
   for (const Observation& observation : observations) {
     if (observation.action_space != ActionSpace::kDirections) {
       throw Error(
-          {.what = "the paper's network chooses directions, on grid maps only", .where = observation.view->name()});
+          {.what = "the paper's network chooses directions, on grid maps only", .where = observation.view().name()});
     }
-    batch_.add(observation.view->graph());
+    batch_.add(observation.view().grid().graph());
   }
   features_.resize(static_cast<std::size_t>(batch_.node_count()) * kPaperFeatureCount);
   std::span<float> rest = features_;
   for (const Observation& observation : observations) {
-    const std::size_t size = static_cast<std::size_t>(observation.view->graph().node_count()) * kPaperFeatureCount;
-    encoder_for(*observation.view).encode(observation.position, observation.visits, rest.first(size));
+    const std::size_t size = static_cast<std::size_t>(observation.view().node_count()) * kPaperFeatureCount;
+    encoder_for(observation.view()).encode(observation.position, observation.visits, rest.first(size));
     rest = rest.subspan(size);
   }
   network_.q_values(batch_, features_, q);
 }
 
-void PaperPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
+void PaperPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
   q_.resize(observations.size() * kActionCount);
   q_values(observations, q_);
   for (std::size_t i = 0; i < observations.size(); ++i) {

@@ -17,7 +17,7 @@ class PaperPolicy final : public Policy {
   explicit PaperPolicy(PaperParameters parameters);
   PaperPolicy(const PaperPolicy&) = delete;  // the network points into the parameters
 
-  void act(std::span<const Observation> observations, std::span<int> actions) override;
+  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
 
   // q: [B, A], raw. Many or large observations are worked off in blocks, cut by size.
   void q_values(std::span<const Observation> observations, std::span<float> q);

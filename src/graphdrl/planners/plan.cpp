@@ -1,35 +1,14 @@
 #include "graphdrl/planners/plan.h"
 
+#include <algorithm>
 #include <utility>
 
-#include "graphdrl/base/parallel.h"
-
 namespace graphdrl {
-namespace {
 
-std::atomic<bool> stopped = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
-
-}  // namespace
-
-void stop_planning() {
-  stopped = true;
-}
-
-StopScope::StopScope(const std::atomic<bool>& stop) : before_(std::exchange(detail::task_context(), &stop)) {}
-
-StopScope::~StopScope() {
-  detail::task_context() = before_;
-}
-
-bool planning_stopped() {
-  const auto* const flag = static_cast<const std::atomic<bool>*>(detail::task_context());
-  return stopped.load(std::memory_order_relaxed) || (flag != nullptr && flag->load(std::memory_order_relaxed));
-}
-
-Deadline deadline_after(TimeLimit limit) {
-  if (!limit) return std::nullopt;
-  return std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(*limit);
+void Plan::settle(double other_bound) {
+  bound = std::min(bound, other_bound);
+  optimal = optimal || meets(prize, bound);
+  if (optimal) bound = prize;
 }
 
 bool better(const Plan& one, const Plan& other) {
@@ -43,10 +22,10 @@ Plan better_of(Plan first, Plan second) {
 
 Plan plan_of_walk(const Task& task, std::vector<NodeId> walk, bool optimal) {
   Plan plan{.walk = std::move(walk), .optimal = optimal};
-  const Graph& open = task.view.open();
-  NodeSet visited = task.visited_before();
+  const Graph& open = task.view().open();
+  NodeSet visited = task.ground();
   plan.visited = visited.count();
-  if (task.visited.empty()) plan.prize = task.view.prize(task.start);
+  plan.prize = task.prize(task.start());
   for (std::size_t i = 1; i < plan.walk.size(); ++i) {
     const NodeId next = plan.walk[i];
     const NodeId from = plan.walk[i - 1];
@@ -54,17 +33,21 @@ Plan plan_of_walk(const Task& task, std::vector<NodeId> walk, bool optimal) {
     if (visited.contains(next)) continue;
     visited.insert(next);
     ++plan.visited;
-    plan.prize += task.view.prize(next);
+    plan.prize += task.prize(next);
   }
   return plan;
 }
 
+Plan Planner::plan_from(const Task& task, Plan known, const Clock& clock) {
+  return better_of(std::move(known), plan(task, clock));
+}
+
 std::vector<NodeId> walk_through(const Task& task, std::span<const NodeId> first_visits, NearestFirst& search) {
   using Next = NearestFirst::Next;
-  std::vector<NodeId> walk = {task.start};
-  NodeSet visited = task.visited_before();
+  std::vector<NodeId> walk = {task.start()};
+  NodeSet visited = task.ground();
   for (const NodeId target : first_visits) {
-    search.run(task.view.open(), walk.back(), kNoLimit, [&](NodeId node, double) {
+    search.run(task.view().open(), walk.back(), kNoLimit, [&](NodeId node, double) {
       if (node == target) return Next::kEnd;
       return visited.contains(node) ? Next::kThrough : Next::kPast;
     });
@@ -83,11 +66,11 @@ void append_way_to(const View& view, NodeId node, std::vector<NodeId>& walk, Nea
 }
 
 void append_way_to_end(const Task& task, std::vector<NodeId>& walk, NearestFirst& search) {
-  if (task.ends_anywhere() || walk.back() == task.end) return;
-  search.run_cheapest(task.view.open(), walk.back(), kNoLimit, [&](NodeId met, double) {
-    return met == task.end ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+  if (task.ends_anywhere() || walk.back() == task.end()) return;
+  search.run_cheapest(task.view().open(), walk.back(), kNoLimit, [&](NodeId met, double) {
+    return met == task.end() ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
   });
-  search.append_path_to(task.end, walk);
+  search.append_path_to(task.end(), walk);
 }
 
 }  // namespace graphdrl

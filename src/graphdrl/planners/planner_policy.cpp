@@ -8,55 +8,76 @@ namespace {
 
 constexpr std::size_t kMostPlans = 64;  // as many as the episodes of a block in eval/rollout
 
+// Whether a walk can still be walked as the world is known now.
+bool holds(const Task& task, std::span<const NodeId> walk) {
+  const Graph& open = task.view().open();
+  double cost = 0;
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    const int place = open.index_of(walk[i - 1], walk[i]);
+    if (place < 0) return false;
+    cost += open.cost(walk[i - 1], place);
+  }
+  return cost <= task.limit() && (task.ends_anywhere() || walk.back() == task.end());
+}
+
 }  // namespace
 
-void PlannerPolicy::act(std::span<const Observation> observations, std::span<int> actions) {
-  for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i]);
+void PlannerPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock) {
+  for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i], clock);
 }
 
-const PlannerPolicy::Followed& PlannerPolicy::plan_from_start(const Observation& observation) {
-  const NodeId start = observation.walk.front();
-  const auto known = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
-    return plan.start == start && plan.end == observation.end && plan.budget == observation.budget &&
-           plan.view == *observation.view;
-  });
-  if (known != plans_.end()) return *known;
-  const Task task{.view = *observation.view, .start = start, .budget = observation.budget, .end = observation.end};
-  Followed plan{.view = task.view,
-                .start = start,
-                .end = task.end,
-                .budget = task.budget,
-                .walk = planner_->plan(task).walk,
-                .hashes = {}};
-  std::uint64_t hash = kEmptyWalkHash;
-  for (const NodeId node : plan.walk) plan.hashes.push_back(hash = extended_walk_hash(hash, node));
-  if (plans_.size() < kMostPlans) return plans_.emplace_back(std::move(plan));
-  Followed& place = plans_[oldest_++ % kMostPlans];
-  place = std::move(plan);
-  return place;
-}
-
-int PlannerPolicy::act_on(const Observation& observation) {
-  const Followed& plan = plan_from_start(observation);
+bool PlannerPolicy::Followed::leads_on(const Observation& observation) const {
   const std::size_t step = observation.walk.size() - 1;
-  const auto follow = [&](std::span<const NodeId> rest) {  // from here on
-    if (rest.size() < 2) return kStop;
-    const int action = observation.action_to(rest[1]);
-    if (action == kNoAction || !observation.affordable(action)) {
-      throw std::logic_error("a plan takes a step that cannot be taken");
-    }
-    return action;
-  };
-  if (step < plan.walk.size() && plan.hashes[step] == observation.walk_hash) {
-    return follow(std::span(plan.walk).subspan(step));
+  return step >= before && step - before < walk.size() && hashes[step - before] == observation.walk_hash &&
+         end == observation.task->end() && budget == observation.task->budget();
+}
+
+std::span<const NodeId> PlannerPolicy::Followed::rest(const Observation& observation) const {
+  return std::span(walk).subspan(observation.walk.size() - 1 - before);
+}
+
+const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& observation, const Clock& clock) {
+  const Task& whole = *observation.task;
+  const bool at_start = observation.walk.size() == 1;
+  const Task task = at_start ? whole
+                             : whole.rest(observation.position, std::max(0.0, whole.budget() - observation.spent),
+                                          observation.ground());
+  const auto older = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
+    return whole.view().is_later_than(plan.view) && plan.leads_on(observation);
+  });
+  Plan plan;
+  if (older != plans_.end() && holds(task, older->rest(observation))) {
+    const std::span<const NodeId> rest = older->rest(observation);
+    plan = planner_->plan_from(task, plan_of_walk(task, {rest.begin(), rest.end()}), clock);
+  } else {
+    plan = planner_->plan(task, clock);
   }
-  Task task{.view = *observation.view,
-            .start = observation.position,
-            .budget = std::max(0.0, observation.budget - observation.spent),
-            .end = observation.end,
-            .visited = NodeSet(observation.view->node_count())};
-  for (const NodeId node : observation.walk) task.visited.insert(node);
-  return follow(planner_->plan(task).walk);
+  Followed followed{.view = whole.view(),
+                    .end = whole.end(),
+                    .budget = whole.budget(),
+                    .before = observation.walk.size() - 1,
+                    .walk = std::move(plan.walk),
+                    .hashes = {observation.walk_hash}};
+  for (std::size_t i = 1; i < followed.walk.size(); ++i) {
+    followed.hashes.push_back(extended_walk_hash(followed.hashes.back(), followed.walk[i]));
+  }
+  if (older != plans_.end()) return *older = std::move(followed);
+  if (plans_.size() < kMostPlans) return plans_.emplace_back(std::move(followed));
+  return plans_[oldest_++ % kMostPlans] = std::move(followed);
+}
+
+int PlannerPolicy::act_on(const Observation& observation, const Clock& clock) {
+  const auto known = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
+    return plan.view == observation.view() && plan.leads_on(observation);
+  });
+  const std::span<const NodeId> rest =
+      (known != plans_.end() ? *known : plan_anew(observation, clock)).rest(observation);
+  if (rest.size() < 2) return kStop;
+  const int action = observation.action_to(rest[1]);
+  if (action == kNoAction || !observation.affordable(action)) {
+    throw std::logic_error("a plan takes a step that cannot be taken");
+  }
+  return action;
 }
 
 }  // namespace graphdrl

@@ -9,26 +9,31 @@
 
 namespace graphdrl {
 
-// Follows the plan of a planner and stops at its end. Plans once for each start; where someone else led the way, it
-// plans anew from there, step by step.
+// Follows the plan of a planner and stops at its end. Plans at the start of a walk, and anew from where it stands once
+// the walk has left its plan or more is known of the world [View::version()]; what was left of the plan is where the
+// planner goes on from then.
 class PlannerPolicy final : public Policy {
  public:
   explicit PlannerPolicy(std::unique_ptr<Planner> planner) : planner_(std::move(planner)) {}
-  void act(std::span<const Observation> observations, std::span<int> actions) override;
+  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
 
  private:
-  // A plan, and the hash of the walk up to each of its steps, by which an episode is known to be on it.
+  // A plan from somewhere on a walk, and the hash of that walk up to each of its steps, by which an episode is known to
+  // be on it.
   struct Followed {
     View view;
-    NodeId start;
     NodeId end;
-    double budget;
+    double budget;       // of the whole walk
+    std::size_t before;  // steps of the walk before the plan
     std::vector<NodeId> walk;
     std::vector<std::uint64_t> hashes;  // as walk
+
+    bool leads_on(const Observation& observation) const;
+    std::span<const NodeId> rest(const Observation& observation) const;
   };
 
-  int act_on(const Observation& observation);
-  const Followed& plan_from_start(const Observation& observation);
+  int act_on(const Observation& observation, const Clock& clock);
+  const Followed& plan_anew(const Observation& observation, const Clock& clock);
 
   std::unique_ptr<Planner> planner_;
   std::vector<Followed> plans_;  // the last ones, kMostPlans at most

@@ -1,18 +1,16 @@
 #include "graphdrl/planners/registry.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include <array>
 #include <charconv>
 #include <filesystem>
-#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/planners/baselines.h"
-#include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/exact.h"
-#include "graphdrl/planners/explorer.h"
 #include "graphdrl/planners/local_search.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/planner_policy.h"
@@ -20,129 +18,142 @@
 namespace graphdrl {
 namespace {
 
-using PlannerFactory = std::unique_ptr<Planner> (*)();
-using PolicyFactory = std::unique_ptr<Policy> (*)(std::uint64_t seed);
-
-std::unique_ptr<Planner> make_explorer(SharedExplorer parameters) {
-  return std::make_unique<ExplorerPlanner>(std::make_shared<ExplorerScorer>(std::move(parameters)));
-}
-
-const std::map<std::string, PlannerFactory>& planners() {
-  static const std::map<std::string, PlannerFactory> table = {
-      {"dfs", []() -> std::unique_ptr<Planner> { return std::make_unique<DepthFirstPlanner>(); }},
-      {"nearest", []() -> std::unique_ptr<Planner> { return std::make_unique<NearestPlanner>(); }},
-      {"explorer", [] { return make_explorer(builtin_explorer()); }},
-      {"exact",
-       []() -> std::unique_ptr<Planner> {
-         return std::make_unique<ExactPlanner>(
-             std::make_unique<LocalSearchPlanner>(LocalSearchOptions(), make_explorer(builtin_explorer())));
-       }},
-  };
-  return table;
-}
-
-const std::map<std::string, PolicyFactory>& random_policies() {
-  static const std::map<std::string, PolicyFactory> table = {
-      {"random", [](std::uint64_t seed) -> std::unique_ptr<Policy> { return std::make_unique<RandomPolicy>(seed); }},
-      {"random-walk",
-       [](std::uint64_t seed) -> std::unique_ptr<Policy> { return std::make_unique<RandomWalkPolicy>(seed); }},
-  };
-  return table;
-}
-
-// `beam[:W]` and `guided[:W[:FILE]]`, taken apart.
-struct BeamName {
-  int width;
-  bool guided;
-  std::string file;  // empty for the explorer in the program
+struct PolicyName {
+  std::string_view name;
+  PolicyKind kind;
+  std::string_view parameters = {};  // as help shows them
 };
 
-// Empty for another name. Throws Error on a bad width.
-std::optional<BeamName> parse_beam_name(std::string_view name) {
-  const std::size_t colon = std::min(name.find(':'), name.size());
-  const std::string_view kind = name.substr(0, colon);
-  if (kind != "beam" && kind != "guided") return std::nullopt;
-  BeamName result{.width = BeamOptions{}.width, .guided = kind == "guided", .file = {}};
-  if (colon == name.size()) return result;
-  std::string_view text = name.substr(colon + 1);
-  if (const std::size_t next = text.find(':'); result.guided && next != std::string_view::npos) {
-    result.file = text.substr(next + 1);
-    text = text.substr(0, next);
-    if (result.file.empty()) {
+constexpr std::array<PolicyName, 9> kNames = {{{"search", PolicyKind::kSearch, "[:ITERATIONS]"},
+                                               {"beam", PolicyKind::kBeam, "[:W]"},
+                                               {"guided", PolicyKind::kGuided, "[:W[:FILE]]"},
+                                               {"dfs", PolicyKind::kDepthFirst},
+                                               {"exact", PolicyKind::kExact},
+                                               {"explorer", PolicyKind::kExplorer},
+                                               {"nearest", PolicyKind::kNearest},
+                                               {"random", PolicyKind::kRandom},
+                                               {"random-walk", PolicyKind::kRandomWalk}}};
+
+// A whole number from 1 to `most`; empty where the text is none.
+std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t most) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool good = error == std::errc() && end == text.data() + text.size() && value >= 1 && value <= most;
+  return good ? std::optional(value) : std::nullopt;
+}
+
+// What stands behind the first colon of a name.
+void parse_parameters(const std::string& name, std::string_view text, PolicySpec& spec) {
+  if (spec.kind == PolicyKind::kSearch) {
+    const auto iterations = parse_count(text, kMostIterations);
+    if (!iterations) {
+      throw Error({.what = "bad number of iterations",
+                   .expected = fmt::format("search:N with N from 1 to {}", kMostIterations),
+                   .got = in_quotes(name, 200)});
+    }
+    spec.iterations = *iterations;
+    return;
+  }
+  if (const std::size_t colon = text.find(':'); spec.kind == PolicyKind::kGuided && colon != std::string_view::npos) {
+    spec.file = text.substr(colon + 1);
+    text = text.substr(0, colon);
+    if (spec.file.empty()) {
       throw Error({.what = "no policy file is named", .expected = "guided:W:FILE", .got = in_quotes(name, 200)});
     }
   }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.width);
-  const bool good = error == std::errc() && end == text.data() + text.size();
-  if (good && result.width >= 1 && result.width <= kMaxBeamWidth) return result;
-  throw Error({.what = "bad beam width",
-               .expected = fmt::format("{}:W with W from 1 to {}", kind, kMaxBeamWidth),
-               .got = in_quotes(name, 200)});
+  const auto width = parse_count(text, kMaxBeamWidth);
+  if (!width) {
+    throw Error({.what = "bad beam width",
+                 .expected = fmt::format("{}:W with W from 1 to {}", name.substr(0, name.find(':')), kMaxBeamWidth),
+                 .got = in_quotes(name, 200)});
+  }
+  spec.width = static_cast<int>(*width);
 }
 
-std::unique_ptr<Planner> make_beam(const BeamName& name) {
-  const BeamOptions options{.width = name.width};
-  if (!name.guided) return std::make_unique<BeamPlanner>(options);
-  const auto scorer =
-      std::make_shared<ExplorerScorer>(name.file.empty() ? builtin_explorer() : read_explorer_file(name.file));
-  return std::make_unique<BeamPlanner>(options, scorer, std::make_unique<ExplorerPlanner>(scorer));
+std::unique_ptr<Planner> explorer_planner(SharedExplorer parameters) {
+  return std::make_unique<ExplorerPlanner>(std::make_shared<ExplorerScorer>(std::move(parameters)));
 }
 
-// `search[:ITERATIONS]`; empty for another name. Throws Error on a bad number.
-std::optional<std::int64_t> parse_search_name(std::string_view name) {
-  constexpr std::string_view kName = "search";
-  if (name == kName) return 0;
-  if (!name.starts_with(kName) || name[kName.size()] != ':') return std::nullopt;
-  const std::string_view text = name.substr(kName.size() + 1);
-  std::int64_t iterations = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), iterations);
-  const bool good = error == std::errc() && end == text.data() + text.size();
-  if (good && iterations >= 1 && iterations <= kMostIterations) return iterations;
-  throw Error({.what = "bad number of iterations",
-               .expected = fmt::format("search:N with N from 1 to {}", kMostIterations),
-               .got = in_quotes(name, 200)});
+std::unique_ptr<Planner> search_planner(const LocalSearchOptions& options = {}) {
+  return std::make_unique<LocalSearchPlanner>(options, explorer_planner(builtin_explorer()));
+}
+
+SharedExplorer read_explorer_parameters(const std::string& file) {
+  TrainedPolicy policy = read_policy(file);
+  if (auto* const explorer = std::get_if<SharedExplorer>(&policy)) return *explorer;
+  throw Error({.what = "the policy is no explorer", .expected = "one that `graphdrl train` wrote", .where = file});
 }
 
 }  // namespace
 
-std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed) {
-  if (const auto iterations = parse_search_name(name)) {
-    return std::make_unique<LocalSearchPlanner>(LocalSearchOptions{.iterations = *iterations, .seed = seed},
-                                                make_explorer(builtin_explorer()));
+PolicySpec parse_policy(const std::string& name) {
+  const std::size_t colon = std::min(name.find(':'), name.size());
+  for (const PolicyName& known : kNames) {
+    if (known.name != std::string_view(name).substr(0, colon)) continue;
+    if (colon < name.size() && known.parameters.empty()) break;
+    PolicySpec spec{.kind = known.kind, .label = name};
+    if (colon < name.size()) parse_parameters(name, std::string_view(name).substr(colon + 1), spec);
+    return spec;
   }
-  if (const auto beam = parse_beam_name(name)) return make_beam(*beam);
-  if (const auto factory = planners().find(name); factory != planners().end()) return factory->second();
-  if (random_policies().contains(name)) return nullptr;
   std::error_code error;
   if (!std::filesystem::exists(name, error)) {
     throw Error({.what = "no such policy", .expected = policy_names(), .got = in_quotes(name, 200)});
   }
-  return is_explorer_file(name) ? make_explorer(read_explorer_file(name)) : nullptr;
+  return {.kind = PolicyKind::kFile, .file = name, .label = std::filesystem::path(name).stem().string()};
 }
 
-std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed) {
-  if (auto planner = make_planner(name, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
-  if (const auto factory = random_policies().find(name); factory != random_policies().end()) {
-    return factory->second(seed);
+std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed) {
+  switch (spec.kind) {
+    case PolicyKind::kRandom:
+    case PolicyKind::kRandomWalk:
+      return nullptr;
+    case PolicyKind::kDepthFirst:
+      return std::make_unique<DepthFirstPlanner>();
+    case PolicyKind::kNearest:
+      return std::make_unique<NearestPlanner>();
+    case PolicyKind::kBeam:
+      return std::make_unique<BeamPlanner>(BeamOptions{.width = spec.width});
+    case PolicyKind::kGuided: {
+      const auto scorer = std::make_shared<ExplorerScorer>(spec.file.empty() ? builtin_explorer()
+                                                                             : read_explorer_parameters(spec.file));
+      return std::make_unique<BeamPlanner>(BeamOptions{.width = spec.width}, scorer,
+                                           std::make_unique<ExplorerPlanner>(scorer));
+    }
+    case PolicyKind::kExplorer:
+      return explorer_planner(builtin_explorer());
+    case PolicyKind::kSearch:
+      return search_planner({.iterations = spec.iterations, .seed = seed});
+    case PolicyKind::kExact:
+      return std::make_unique<ExactPlanner>(search_planner());
+    case PolicyKind::kFile:
+      break;
   }
-  return std::make_unique<PaperPolicy>(read_policy_file(name));
+  TrainedPolicy policy = read_policy(spec.file);
+  auto* const explorer = std::get_if<SharedExplorer>(&policy);
+  return explorer != nullptr ? explorer_planner(*explorer) : nullptr;
 }
 
-bool is_random(const std::string& name) {
-  return random_policies().contains(name);
+std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) {
+  if (spec.kind == PolicyKind::kRandom) return std::make_unique<RandomPolicy>(seed);
+  if (spec.kind == PolicyKind::kRandomWalk) return std::make_unique<RandomWalkPolicy>(seed);
+  if (auto planner = make_planner(spec, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
+  return std::make_unique<PaperPolicy>(std::get<PaperParameters>(read_policy(spec.file)));
+}
+
+TrainedPolicy read_policy(const std::string& name) {
+  if (name == "explorer") return builtin_explorer();
+  const Safetensors file = Safetensors::read(name);
+  const auto description = policy_description(file);
+  if (description.is_object() && description.value("kind", nlohmann::json()) == "explorer") {
+    return std::make_shared<const ExplorerParameters>(read_explorer(file));
+  }
+  return read_policy_file(name);
 }
 
 std::string policy_names() {
-  std::vector<std::string> names = {"search[:ITERATIONS]", "beam[:W]", "guided[:W[:FILE]]"};
-  for (const auto& [name, unused] : planners()) names.push_back(name);
-  for (const auto& [name, unused] : random_policies()) names.push_back(name);
-  return fmt::format("{} or a policy file", fmt::join(names, ", "));
-}
-
-std::string policy_label(const std::string& name) {
-  const bool known =
-      planners().contains(name) || random_policies().contains(name) || parse_beam_name(name) || parse_search_name(name);
-  return known ? name : std::filesystem::path(name).stem().string();
+  std::string text;
+  for (const PolicyName& known : kNames) text += fmt::format("{}{}, ", known.name, known.parameters);
+  return text.substr(0, text.size() - 2) + " or a policy file";
 }
 
 }  // namespace graphdrl

@@ -4,31 +4,59 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <variant>
 
 #include "graphdrl/env/policy.h"
+#include "graphdrl/nn/paper_network.h"
+#include "graphdrl/planners/beam.h"
+#include "graphdrl/planners/explorer.h"
 #include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
 
-// Planners and policies: `search`, `search:ITERATIONS`, `dfs`, `nearest`, `explorer`, `beam` or `beam:W`, `guided`,
-// `guided:W` or `guided:W:FILE`, `exact`, and explorers in policy files, plan whole walks; `random`, `random-walk` and
-// the paper's networks in policy files choose step by step. Throw Error on any other name, and on a file that holds no
-// policy.
-//
-// make_planner: null where the name is of one that chooses step by step. seed: of `search`.
-std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed = 1);
+enum class PolicyKind {
+  kRandom,
+  kRandomWalk,  // these two choose step by step, and so do the paper's networks in files; others plan whole walks
+  kDepthFirst,
+  kNearest,
+  kBeam,
+  kGuided,
+  kExplorer,
+  kSearch,
+  kExact,
+  kFile,  // an explorer, or a network of the paper
+};
 
-// Whatever the name is of; planners are followed step by step.
-std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed);
+// A policy's name, taken apart.
+struct PolicySpec {
+  PolicyKind kind;
+  int width = BeamOptions{}.width;  // of beam and guided
+  std::int64_t iterations = 0;      // of search; 0: as many as the world's size asks for, or the time allows
+  std::string file = {};            // of kFile; of guided, empty for the explorer in the program
+  std::string label = {};           // in tables: the name given, a file's stem
+};
 
-// Whether the choices of a policy depend on its seed.
-bool is_random(const std::string& name);
+// `random`, `random-walk`, `dfs`, `nearest`, `beam[:W]`, `guided[:W[:FILE]]`, `explorer`, `search[:ITERATIONS]`,
+// `exact`, or a policy file. Throws Error on any other name.
+PolicySpec parse_policy(const std::string& name);
+
+// Null where it chooses step by step. seed: of `search`. Throws Error on a file that holds no policy.
+std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed = 1);
+// Whatever it is; planners are followed step by step. seed: of `search` and of random policies.
+std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed);
+
+inline std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed = 1) {
+  return make_planner(parse_policy(name), seed);
+}
+inline std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed) {
+  return make_policy(parse_policy(name), seed);
+}
+
+// A trained network: that of a file, or `explorer`, the one in the program. Throws Error where there is none.
+using TrainedPolicy = std::variant<SharedExplorer, PaperParameters>;
+TrainedPolicy read_policy(const std::string& name);
 
 // "beam[:W], guided[:W[:FILE]], dfs, exact, …, random-walk or a policy file", for help and errors.
 std::string policy_names();
-
-// What a policy is called in a table: the name given, a file's stem.
-std::string policy_label(const std::string& name);
 
 }  // namespace graphdrl

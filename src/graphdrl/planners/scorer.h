@@ -22,7 +22,8 @@ class FirstVisitScorer {
 
   // Scores the first visits of each state, of all or of the nearest; those of a state stand together, nearest first.
   // `visits` is overwritten. Gives whether first visits of any state were left out.
-  virtual bool score(const View& view, std::span<const ExplorationState> states, std::vector<ScoredVisit>& visits) = 0;
+  // REQUIRES: at least one state; all are of one task.
+  virtual bool score(std::span<const Exploration> states, std::vector<ScoredVisit>& visits) = 0;
 
   // How many states to score together at most, so that a deadline is not missed by much.
   virtual int most_states() const = 0;

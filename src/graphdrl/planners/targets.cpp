@@ -14,38 +14,37 @@ constexpr int kMetPerLook = 4096;  // nodes between two looks at the clock
 
 }  // namespace
 
-Targets::Targets(const Task& task, Deadline deadline) : view_(task.view) {
-  const View& view = task.view;
+Targets::Targets(const Task& task, const Clock& clock) : view_(task.view()) {
+  const View& view = task.view();
   const double limit = task.limit();
   numbers_.assign(view.node_count(), -1);
-  const CostToEnd cost_to_end(task);
   const auto add = [&](NodeId node, double prize) {
     numbers_[node] = static_cast<int>(nodes_.size());
     nodes_.push_back(node);
     prizes_.push_back(prize);
-    to_end_.push_back(cost_to_end(node));
+    to_end_.push_back(task.cost_to_end(node));
     total_prize_ += prize;
   };
-  const NodeSet visited = task.visited_before();
-  add(task.start, task.visited.empty() ? view.prize(task.start) : 0);
+  const NodeSet visited = task.ground();
+  add(task.start(), task.prize(task.start()));
   NearestFirst search;
-  search.run_cheapest(view.open(), task.start, limit, [&](NodeId node, double cost) {
-    if (visited.contains(node) || view.prize(node) <= 0 || node == task.end) return Next::kThrough;
-    if (cost + cost_to_end(node) <= limit) add(node, view.prize(node));
+  search.run_cheapest(view.open(), task.start(), limit, [&](NodeId node, double cost) {
+    if (visited.contains(node) || task.prize(node) <= 0 || node == task.end()) return Next::kThrough;
+    if (cost + task.cost_to_end(node) <= limit) add(node, task.prize(node));
     return Next::kThrough;
   });
-  const bool end_counts = !task.ends_anywhere() && !visited.contains(task.end);
-  prizes_.push_back(end_counts ? view.prize(task.end) : 0);
+  const bool end_counts = !task.ends_anywhere() && !visited.contains(task.end());
+  prizes_.push_back(end_counts ? task.prize(task.end()) : 0);
   total_prize_ += prizes_.back();
 
   const bool with_table = end() <= kTableTargets;
   if (with_table) table_.assign(nodes_.size() * prizes_.size(), kNoLimit);
-  find_near(view.open(), limit, near_, near_begin_, with_table ? nullptr : &near_cost_, deadline);
-  if (view.open().directed()) find_near(view.into(), limit, into_, into_begin_, nullptr, deadline);
+  find_near(view.open(), limit, near_, near_begin_, with_table ? nullptr : &near_cost_, clock);
+  if (view.open().directed()) find_near(view.into(), limit, into_, into_begin_, nullptr, clock);
 }
 
 void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near, std::vector<std::int64_t>& begin,
-                        std::vector<double>* costs, Deadline deadline) {
+                        std::vector<double>* costs, const Clock& clock) {
   NearestFirst search;
   const bool fills_table = !table_.empty() && &near == &near_;
   begin.assign(1, 0);
@@ -75,7 +74,7 @@ void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near
     met_since_look += met;
     if (met_since_look < kMetPerLook) continue;
     met_since_look = 0;
-    if (passed(deadline)) complete_ = false;
+    if (clock.passed()) complete_ = false;
     if (!complete_) return;
   }
 }

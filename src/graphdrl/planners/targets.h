@@ -18,8 +18,8 @@ class Targets {
   static constexpr int kTableTargets = 2000;  // a table of 32 MB
 
   // Cost: a search from every target; over the whole graph where there is a table, else up to its nearest. Gives up
-  // once the deadline passes [complete()].
-  Targets(const Task& task, Deadline deadline);
+  // once the clock passes [complete()].
+  explicit Targets(const Task& task, const Clock& clock = {});
 
   // What is left of these once a walk has gone to `first`, which becomes the start; the start before is none any more.
   // REQUIRES: there is a table; `first` is neither the start nor the end.
@@ -47,7 +47,7 @@ class Targets {
   }
   // The same, searched for in the graph: for at most so much and among the nearest nodes, else kNoLimit. Cost: what is
   // nearer, at most kMostSearched nodes.
-  static constexpr int kMostSearched = 4096;  // more than worlds of 60x60 have: farther ways stay as dear as they seem
+  static constexpr int kMostSearched = 4096;  // more than worlds of 60x60 have: longer ways keep their upper bound
   double searched_cost(int from, int to, double most, NearestFirst& search) const;
 
   // From a target other than the end to each, [T + 1]. REQUIRES: there is a table.
@@ -60,7 +60,7 @@ class Targets {
   }
   double near_cost(int from, int to) const;
   void find_near(const Graph& graph, double limit, std::vector<int>& near, std::vector<std::int64_t>& begin,
-                 std::vector<double>* costs, Deadline deadline);
+                 std::vector<double>* costs, const Clock& clock);
 
   View view_;
   std::vector<NodeId> nodes_;             // [T]

@@ -34,14 +34,12 @@ double common_step(const std::vector<double>& values) {
 
 }  // namespace
 
-WalkRelaxation::WalkRelaxation(const Task& task) : WalkRelaxation(task, Reachable(task)) {}
-
-WalkRelaxation::WalkRelaxation(const Task& task, const Reachable& reachable)
-    : directed_(task.view.open().directed()),
-      nodes_(reachable.nodes),
-      network_(static_cast<int>(reachable.nodes.size()) + 1) {
-  const Graph& open = task.view.open();
-  std::vector<int> number(task.view.node_count(), -1);
+WalkRelaxation::WalkRelaxation(const Task& task)
+    : directed_(task.view().open().directed()),
+      nodes_(task.reach().nodes),
+      network_(static_cast<int>(task.reach().nodes.size()) + 1) {
+  const Graph& open = task.view().open();
+  std::vector<int> number(task.view().node_count(), -1);
   for (int i = 0; i < std::ssize(nodes_); ++i) number[nodes_[i]] = i;
   for (int i = 0; i < std::ssize(nodes_); ++i) {
     const auto neighbours = open.neighbours(nodes_[i]);
@@ -57,9 +55,9 @@ WalkRelaxation::WalkRelaxation(const Task& task, const Reachable& reachable)
     at_[arcs_[arc].to].push_back(arc);
   }
   parent_.assign(nodes_.size(), -1);
-  const Blocks blocks(open, task.view.into(), task.start, reachable.contains);
+  const Blocks blocks(open, task.view().into(), task.start(), task.reach().contains);
   for (int block = 0; block < blocks.count(); ++block) {
-    if (blocks.root(block) == task.start) continue;
+    if (blocks.root(block) == task.start()) continue;
     for (const NodeId member : blocks.members(block)) parent_[number[member]] = number[blocks.root(block)];
   }
   place_.assign(nodes_.size(), -1);
@@ -71,18 +69,18 @@ WalkRelaxation::WalkRelaxation(const Task& task, const Reachable& reachable)
     place_[node] = places++;
     for (const int arc : at_[node]) stack.push_back(arcs_[arc].from + arcs_[arc].to - node);
   }
-  add_columns(task, reachable);
+  add_columns(task);
   add_rows(task);
   add_links();
 }
 
-void WalkRelaxation::add_columns(const Task& task, const Reachable& reachable) {
+void WalkRelaxation::add_columns(const Task& task) {
   std::vector<double> prizes;
   for (const NodeId node : nodes_) {
-    const double prize = reachable.prizes[node];
+    const double prize = task.prize(node);
     prizes.push_back(prize);
-    visit_.push_back(program_.add_column(prize, node == task.start ? 1 : 0, 1));
-    const bool may_end = task.ends_anywhere() || node == task.end;
+    visit_.push_back(program_.add_column(prize, node == task.start() ? 1 : 0, 1));
+    const bool may_end = task.ends_anywhere() || node == task.end();
     end_.push_back(may_end ? program_.add_column(0, 0, 1) : -1);
   }
   prize_step_ = common_step(prizes);
@@ -173,12 +171,12 @@ void WalkRelaxation::add_ends(LinearProgram::Row& row, double factor, const std:
   row.upper -= factor;
 }
 
-int WalkRelaxation::separate(Deadline deadline) {
+int WalkRelaxation::separate(const Clock& clock) {
   found_.clear();
   separate_simple();
-  if (!directed_) separate_parity(deadline);
+  if (!directed_) separate_parity(clock);
   if (!directed_) separate_partitions();
-  separate_connection(deadline);
+  separate_connection(clock);
   program_.add_rows(found_);
   return static_cast<int>(found_.size());
 }
@@ -281,7 +279,7 @@ void WalkRelaxation::separate_partition(const std::vector<int>& component) {
 }
 
 // Each node alone, and what hangs together by edges that are not integral, by more and more of a fraction.
-void WalkRelaxation::separate_parity(Deadline deadline) {
+void WalkRelaxation::separate_parity(const Clock& clock) {
   std::set<std::vector<int>> tried;
   for (const double fraction : {1.0, 0.01, 0.1, 0.2, 0.3, 0.4}) {
     std::vector<int> component = components([&](const Arc& arc) {
@@ -290,14 +288,14 @@ void WalkRelaxation::separate_parity(Deadline deadline) {
     });
     if (tried.insert(component).second) separate_parity_of(component);
   }
-  if (found_.empty()) separate_parity_cuts(deadline);
+  if (found_.empty()) separate_parity_cuts(clock);
 }
 
 // S from the minimum cuts between nodes, by how far values are from whole numbers: those
 // of a cut tree, which hold a violated row where there is one without ends [Padberg and Rao 1982; Letchford, Reinelt
 // and Theis 2008]. The cuts are those of an equivalent flow tree
 // [Gusfield 1990].
-void WalkRelaxation::separate_parity_cuts(Deadline deadline) {
+void WalkRelaxation::separate_parity_cuts(const Clock& clock) {
   const int count = static_cast<int>(nodes_.size());
   MaxFlow distances(count);
   const auto add = [&](int one, int other, double part) {
@@ -321,7 +319,7 @@ void WalkRelaxation::separate_parity_cuts(Deadline deadline) {
   }
   for (int i = 0; i < count; ++i) {
     if (toward[i] < 0) continue;
-    if (passed(deadline)) break;
+    if (clock.passed()) break;
     distances.reaches(i, toward[i], kNoLimit);
     std::vector<int> side(count);
     for (const int node : distances.near_side()) side[node] = 1;
@@ -409,7 +407,7 @@ void WalkRelaxation::add_links() {
 
 // In order of y, so that a node once found connected well enough is in no violated S of those to come: it counts as the
 // start for them, and flows end soon.
-void WalkRelaxation::separate_connection(Deadline deadline) {
+void WalkRelaxation::separate_connection(const Clock& clock) {
   const std::int64_t before = network_.scanned();
   for (std::size_t arc = 0; arc < arcs_.size(); ++arc) {
     const double capacity = uses(arcs_[arc]);
@@ -426,7 +424,7 @@ void WalkRelaxation::separate_connection(Deadline deadline) {
     const double needed = (directed_ ? 1 : 2) * value(visit_[node]) - kViolation;
     if (needed <= 0) break;
     if (cut_off[node] != 0) continue;
-    if (passed(deadline)) break;
+    if (clock.passed()) break;
     if (network_.reaches(node, static_cast<int>(nodes_.size()), needed)) {
       network_.set_capacity(to_start_[node], kNoLimit);
       continue;

@@ -54,7 +54,7 @@ class WalkRelaxation {
   // Takes out the rows added by separate() that do not bind.
   void remove_slack_rows() { program_.remove_slack_rows(fixed_rows_); }
   // Adds rows that the last solution violates, as many as it finds until the deadline. Their number.
-  int separate(Deadline deadline);
+  int separate(const Clock& clock);
   // Of the last solution.
   bool integral() const;
   // Two parts without the last solution, which together hold every walk. REQUIRES: it is optimal and not integral.
@@ -70,8 +70,7 @@ class WalkRelaxation {
     int once;   // column; of a directed graph how often
     int twice;  // column; -1 in a directed graph
   };
-  WalkRelaxation(const Task& task, const Reachable& reachable);
-  void add_columns(const Task& task, const Reachable& reachable);
+  void add_columns(const Task& task);
   void add_rows(const Task& task);
   std::vector<bool> odd_ends(double step, double budget) const;
   void add_links();
@@ -83,13 +82,13 @@ class WalkRelaxation {
 
   void separate_simple();
   std::vector<int> components(const std::function<bool(const Arc&)>& joins) const;
-  void separate_parity(Deadline deadline);
-  void separate_parity_cuts(Deadline deadline);
+  void separate_parity(const Clock& clock);
+  void separate_parity_cuts(const Clock& clock);
   void separate_parity_of(const std::vector<int>& component);
   void add_parity_row(const std::vector<int>& component, int which);
   void separate_partitions();
   void separate_partition(const std::vector<int>& component);
-  void separate_connection(Deadline deadline);
+  void separate_connection(const Clock& clock);
   void add_connection_row(int node);
 
   static constexpr std::int64_t kArcsPerWork = 10;

@@ -117,7 +117,7 @@ std::string plan_geojson(const PlanReport& report) {
                        {{"policy", report.policy},
                         {"visited", report.plan.visited},
                         {"cost", report.plan.cost},
-                        {"budget", report.task.budget}}}});
+                        {"budget", report.task.budget()}}}});
   const std::vector<std::string> order = visit_order(report);
   for (const NodeId node : world.valid_nodes()) {
     features.push_back({{"type", "Feature"},
@@ -230,8 +230,8 @@ nlohmann::ordered_json plan_json(const PlanReport& report) {
   json["map"] = world.name();
   json["policy"] = report.policy;
   json["start"] = plan.walk.front();
-  json["end"] = report.task.ends_anywhere() ? Json() : Json(report.task.end);
-  json["budget"] = report.task.budget;
+  json["end"] = report.task.ends_anywhere() ? Json() : Json(report.task.end());
+  json["budget"] = report.task.budget();
   json["walk"] = plan.walk;
   if (world.has_cells()) {
     json["walk_cells"] = Json::array();
@@ -257,38 +257,13 @@ nlohmann::ordered_json plan_json(const PlanReport& report) {
   if (world.has_prizes()) {
     json["max_prize"] = plan.bound;
   } else {
-    json["max_visited"] = report.max_visited;
+    json["max_visited"] = report.max_visited();
   }
-  json["gap"] = world.percent_of_all(plan.bound - plan.prize);
+  json["gap"] = world.percent_of_all(plan.bound) - world.percent_of_all(plan.prize);
   json["optimal"] = plan.optimal;
   json["unreachable"] = report.unreachable;
   json["elapsed_s"] = report.elapsed_s;
   return json;
-}
-
-std::vector<std::string> plan_summary(const PlanReport& report) {
-  const World& world = report.world;
-  const Plan& plan = report.plan;
-  std::string length;
-  if (world.has_cells() && world.map()->frame) {
-    length = fmt::format(" ({:.4g} {})", plan.cost * world.map()->frame->cell_size, world.unit());
-  }
-  std::vector<std::string> lines = {
-      fmt::format("visited {} of {} nodes, {:.1f} %, for {:g}{} of a budget of {:g}", plan.visited, world.valid_count(),
-                  100.0 * plan.visited / world.valid_count(), plan.cost, length, report.task.budget)};
-  if (world.has_prizes()) {
-    lines.push_back(
-        fmt::format("prize {:g} of {:g}, {:.1f} %", plan.prize, world.total_prize(), world.percent_of_all(plan.prize)));
-  }
-  const char* const what = world.has_prizes() ? "is worth more" : "visits more";
-  if (plan.optimal) {
-    lines.push_back(fmt::format("optimal: no walk {}", what));
-  } else {
-    const std::string most =
-        world.has_prizes() ? fmt::format("{:g}", plan.bound) : fmt::format("{} nodes", report.max_visited);
-    lines.push_back(fmt::format("no walk {} than {}, {:.1f} %", what, most, world.percent_of_all(plan.bound)));
-  }
-  return lines;
 }
 
 std::string plan_file_endings() {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "graphdrl/report/plan_report.h"
+#include "graphdrl/answer/plan_report.h"
 
 namespace graphdrl {
 
@@ -14,9 +14,6 @@ nlohmann::ordered_json plan_json(const PlanReport& report);
 
 // What has been spent at every node of the walk.
 std::vector<double> costs_so_far(const PlanReport& report);
-
-// Two or three lines: what it visits, what it costs, and the bound.
-std::vector<std::string> plan_summary(const PlanReport& report);
 
 // Throws Error where no plan is written in a file with this ending: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
 // nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h); and where the format needs coordinates that
@@ -30,13 +27,13 @@ void write_plan(const PlanReport& report, const std::string& file);
 std::string plan_file_endings();
 
 // A plan from a file: the document above, an array of node ids, or lines with a node each, the first field of CSV or,
-// below a header, the column `node`, `id` or `label`. Nodes are named as for parse_node(). Policy, budget, end and
-// bound are what the document says; without them the file's name, what the walk costs, anywhere, and none. Throws
-// Error, naming the file and the line, also where a step follows no edge.
-PlanReport read_plan(const World& world, const std::string& file);
+// below a header, the column `node`, `id` or `label`. Nodes are named as for parse_node(). Budget and end are what is
+// asked, else what the document says, else what the walk costs and anywhere; policy and bound what the document says,
+// else the file's name and none. Throws Error, naming the file and the line, also where a step follows no edge.
+PlanReport read_plan(const World& world, const std::string& file, const Asked& asked = {});
 
 // The same for a text; `file` is for error messages.
-PlanReport parse_plan(const World& world, const std::string& text, const std::string& file);
+PlanReport parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked = {});
 
 // Throws Error, naming `file`, where the plan's walk costs more than the task's budget or ends elsewhere.
 void check_walk(const PlanReport& report, const std::string& file);

@@ -88,51 +88,63 @@ std::optional<double> number_at(const nlohmann::json& document, const char* key)
   return item->get<double>();
 }
 
-// What a document says beside the walk.
-void read_claims(const World& world, const nlohmann::json& document, const std::string& file, PlanReport& report) {
+// What a document says of the task.
+Asked read_task(const World& world, const nlohmann::json& document, const std::string& file) {
+  Asked asked;
+  if (const auto budget = number_at(document, "budget")) asked.budget = Budget(*budget);
+  if (const auto end = document.find("end"); end != document.end() && end->is_number_integer()) {
+    asked.end = End::at(parse_node(world, fmt::format("#{}", end->dump()), file + ": end"));
+  }
+  return asked;
+}
+
+// What it says of the plan.
+void read_claims(const World& world, const nlohmann::json& document, PlanReport& report) {
   if (const auto policy = document.find("policy"); policy != document.end() && policy->is_string()) {
     report.policy = *policy;
   }
-  if (const auto budget = number_at(document, "budget")) report.task.budget = checked_budget(world, *budget);
-  if (const auto end = document.find("end"); end != document.end() && end->is_number_integer()) {
-    report.task.end = parse_node(world, fmt::format("#{}", end->dump()), file + ": end");
-  }
-  Plan& plan = report.plan;
-  if (const auto bound = number_at(document, "upper_bound")) plan.bound = *bound / 100 * world.total_prize();
-  plan.optimal = document.value("optimal", nlohmann::json()) == true;
-  if (!world.has_prizes() && std::isfinite(plan.bound)) report.max_visited = static_cast<int>(std::lround(plan.bound));
+  if (const auto bound = number_at(document, "upper_bound")) report.plan.bound = *bound / 100 * world.total_prize();
+  if (!world.has_prizes()) report.plan.bound = std::round(report.plan.bound);
+  report.plan.optimal = document.value("optimal", nlohmann::json()) == true;
 }
 
 }  // namespace
 
-PlanReport read_plan(const World& world, const std::string& file) {
-  return parse_plan(world, read_file(file), file);
+PlanReport read_plan(const World& world, const std::string& file, const Asked& asked) {
+  return parse_plan(world, read_file(file), file, asked);
 }
 
-PlanReport parse_plan(const World& world, const std::string& text, const std::string& file) {
+PlanReport parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
   const nlohmann::json document = is_json ? parse_json(text, file) : nlohmann::json();
   std::vector<NodeId> walk = is_json ? walk_of_json(world, document, file) : walk_of_lines(world, text, file);
   if (walk.empty()) throw Error({.what = "the walk is empty", .expected = "at least a start", .where = file});
   check_steps(world, walk, file);
-  Task task{.view = world, .start = walk.front(), .budget = 0, .end = kNoNode};
-  PlanReport report{.world = world, .task = task, .policy = file, .plan = plan_of_walk(task, std::move(walk))};
-  report.task.budget = report.plan.cost;
-  if (document.is_object()) read_claims(world, document, file, report);
+  const Task any(world, walk.front(), kNoLimit);
+  Plan plan = plan_of_walk(any, std::move(walk));
+  const Asked said = document.is_object() ? read_task(world, document, file) : Asked();
+  const auto end = asked.end ? asked.end : said.end;
+  const auto budget = asked.budget ? asked.budget : said.budget;
+  const Task task(
+      world,
+      {.budget = budget.value_or(Budget(plan.cost)), .start = plan.walk.front(), .end = end.value_or(End::anywhere())});
+  PlanReport report{.world = world, .task = task, .policy = file, .plan = std::move(plan)};
+  if (document.is_object()) read_claims(world, document, report);
   return report;
 }
 
 void check_walk(const PlanReport& report, const std::string& file) {
-  if (report.plan.cost > report.task.limit()) {
+  const Task& task = report.task;
+  if (report.plan.cost > task.limit()) {
     throw Error({.what = "the walk costs more than the budget",
-                 .expected = fmt::format("at most {:g}", report.task.budget),
-                 .got = fmt::format("{:g}", report.plan.cost),
+                 .expected = "at most " + decimal(task.budget()),
+                 .got = decimal(report.plan.cost),
                  .where = file});
   }
-  if (!report.task.ends_anywhere() && report.plan.walk.back() != report.task.end) {
+  if (!task.ends_anywhere() && report.plan.walk.back() != task.end()) {
     throw Error({.what = "the walk ends elsewhere",
-                 .expected = fmt::format("node {}", report.task.end),
+                 .expected = fmt::format("node {}", task.end()),
                  .got = fmt::format("node {}", report.plan.walk.back()),
                  .where = file});
   }

@@ -73,7 +73,7 @@ Json plan_of(const PlanReport& report) {
   Json json = {{"policy", report.policy},
                {"walk", report.plan.walk},
                {"visited", report.plan.visited},
-               {"budget", report.task.budget},
+               {"budget", report.task.budget()},
                {"optimal", report.plan.optimal}};
   if (report.world.open().weighted()) json["costs"] = costs_so_far(report);
   if (std::isfinite(report.plan.bound)) json["upper_bound"] = report.world.percent_of_all(report.plan.bound);

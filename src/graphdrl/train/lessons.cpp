@@ -90,8 +90,8 @@ void visit(Lesson& walk, const FirstVisit& first) {
 }
 
 Task rest_of(const Lesson& walk) {
-  return {
-      .view = walk.at->world, .start = walk.position, .budget = std::max(0.0, walk.spendable), .visited = walk.visited};
+  const double budget = std::max(0.0, walk.spendable);
+  return Task(walk.at->world, walk.position, budget).rest(walk.position, budget, walk.visited);
 }
 
 LessonWorld::LessonWorld(const WorldSpec& spec, std::uint64_t of_seed)

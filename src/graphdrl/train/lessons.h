@@ -3,6 +3,7 @@
 // (docs/explorer.md).
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -53,9 +54,8 @@ struct Lesson {
 
   // Appends the state; gives its first visits, until the encoder's next call.
   std::span<const FirstVisit> append_to(ExplorerBatch& batch, ExplorerEncoder& encoder) const {
-    const ExplorationState state{
-        .visited = visited, .visited_count = visited.count(), .position = position, .spendable = spendable};
-    return encoder.append(at->world, state, scope, batch);
+    const Task task(at->world, position, std::max(0.0, spendable));
+    return encoder.append(Exploration(task, visited, visited.count(), position, spendable), scope, batch);
   }
 };
 

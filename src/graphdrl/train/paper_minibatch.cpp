@@ -14,7 +14,7 @@ void PaperMinibatch::clear() {
 void append_transition(const PaperReplayBuffer& replay, std::size_t index, const PaperFeatureEncoder& encoder,
                        PaperMinibatch& batch) {
   const Transition& t = replay.transition(index);
-  const Graph& graph = encoder.view().graph();
+  const Graph& graph = encoder.view().grid().graph();
   const std::size_t row = batch.x.size();
   const std::size_t values = static_cast<std::size_t>(graph.node_count()) * kPaperFeatureCount;
   batch.graphs.add(graph);

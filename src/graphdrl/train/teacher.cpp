@@ -44,7 +44,7 @@ Teacher::Found Teacher::improve(const Targets& targets, double limit, std::vecto
 
 void Teacher::search(const Task& task, double steps, double from) {
   targets_.clear();
-  const Targets& targets = targets_.emplace_back(task, std::nullopt);
+  const Targets& targets = targets_.emplace_back(task);
   std::vector<int> order;
   for (const NodeId node : best_) {
     if (const int target = targets.target_of(node); target > 0) order.push_back(target);
@@ -58,7 +58,7 @@ void Teacher::search(const Task& task, double steps, double from) {
 void Teacher::begin(const Task& task) {
   NearestPlanner nearest;
   const std::vector<NodeId> walk = nearest.plan(task).walk;
-  NodeSet visited = task.visited_before();
+  NodeSet visited = task.ground();
   best_.clear();
   for (const NodeId node : walk) {
     if (visited.contains(node)) continue;
@@ -76,14 +76,15 @@ NodeId Teacher::next_visit(const Task& task) {
   while (!best_.empty()) {
     const NodeId goal = best_.front();
     bool found = false;
-    search_.run(task.view.open(), task.start, kNoLimit, [&](NodeId node, double /*cost*/) {
+    search_.run(task.view().open(), task.start(), kNoLimit, [&](NodeId node, double /*cost*/) {
       found = node == goal;
       return found ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
     });
     if (found) {
       std::vector<NodeId> way;
       search_.append_path_to(goal, way);
-      return *std::find_if(way.begin(), way.end(), [&](NodeId node) { return !task.visited.contains(node); });
+      const NodeSet ground = task.ground();
+      return *std::find_if(way.begin(), way.end(), [&](NodeId node) { return !ground.contains(node); });
     }
     best_.erase(best_.begin());  // one way edges left it behind
   }
@@ -101,7 +102,7 @@ double Teacher::value(const Task& task, const FirstVisit& first) {
   const auto steps = std::clamp(steps_ * targets.end(), kFewSteps, kManySteps);
   const Found found = improve(targets, task.limit() - first.cost, std::move(order), steps, kLabelFrom);
   const double visits = 1 + found.visits;
-  const double edges = (first.cost + found.cost) / task.view.open().mean_cost();
+  const double edges = (first.cost + found.cost) / task.view().open().mean_cost();
   return visits - kWorthOfCost * (edges - visits);
 }
 

@@ -3,11 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "graphdrl/env/policy.h"
-#include "graphdrl/planners/plan.h"
+#include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
 
@@ -17,22 +18,26 @@ struct PlanReport {
   Task task;
   std::string policy;  // as users name it
   Plan plan;
-  int max_visited = 0;  // by any walk, at most; where there are no prizes
   int unreachable = 0;  // valid nodes that no walk can reach, whatever it spends
   double elapsed_s = 0;
+
+  // By any walk, at most. REQUIRES: the world has no prizes, and the plan has a bound.
+  int max_visited() const { return static_cast<int>(plan.bound); }
 };
 
 struct PlanRequest {
-  std::string policy = "search";  // as make_policy() takes it
+  std::string policy = "search";  // as parse_policy() takes it
   std::uint64_t seed = 1;         // of `search` and of random policies
-  std::optional<double> time_limit_s = {};
+  std::optional<std::int64_t> iterations = {};  // of `search`, instead of those in its name
   // One of these instead of a policy that has a name here; `policy` is then what it is called.
   std::function<std::unique_ptr<Planner>()> own_planner = {};
   std::function<std::unique_ptr<Policy>()> own_policy = {};
 };
 
-// Plans one walk and bounds it, both within the time limit. Throws Error on a policy that there is not, and on a task
-// or a time limit that cannot be.
-PlanReport make_plan(const World& world, const Task& task, const PlanRequest& request, const Report& report = {});
+// Plans one walk and bounds it, both until the clock passes. Throws Error on a policy that there is not.
+PlanReport make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock = {});
+
+// A few lines, for people: what the walk visits, what it is worth and costs, and the bound.
+std::vector<std::string> plan_summary(const PlanReport& report);
 
 }  // namespace graphdrl

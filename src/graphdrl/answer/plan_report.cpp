@@ -1,0 +1,106 @@
+#include "graphdrl/answer/plan_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/env/walk.h"
+#include "graphdrl/eval/rollout.h"
+#include "graphdrl/planners/bound.h"
+#include "graphdrl/planners/local_search.h"
+
+namespace graphdrl {
+namespace {
+
+// Of the time: the bound may take a share of it before planning, and what comes after planning has the rest.
+constexpr double kBoundShare = 0.3;
+constexpr double kPlanShare = 0.97;
+
+PolicySpec spec_of(const PlanRequest& request) {
+  PolicySpec spec = parse_policy(request.policy);
+  if (!request.iterations) return spec;
+  if (spec.kind != PolicyKind::kSearch) {
+    throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(request.policy, 200)});
+  }
+  if (*request.iterations < 1 || *request.iterations > kMostIterations) {
+    throw Error({.what = "bad number of iterations",
+                 .expected = fmt::format("1 to {}", kMostIterations),
+                 .got = fmt::format("{}", *request.iterations)});
+  }
+  spec.iterations = *request.iterations;
+  return spec;
+}
+
+int count_unreachable(const World& world, NodeId start) {
+  int reached = 1;
+  NearestFirst().run(world.open(), start, kNoLimit, [&](NodeId, double) {
+    ++reached;
+    return NearestFirst::Next::kThrough;
+  });
+  return world.valid_count() - reached;
+}
+
+// Nothing is believed that cannot be walked.
+void check_plan(const World& world, const Task& task, const Plan& plan) {
+  Episode episode(world, task, {.action_space = action_space_of(world)});
+  follow_walk(episode, plan.walk);
+  const bool ends_well = task.ends_anywhere() || episode.position() == task.end();
+  if (!ends_well || episode.visited_count() != plan.visited) throw std::logic_error("the plan is not what it says");
+}
+
+}  // namespace
+
+PlanReport make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
+  const Stopwatch watch;
+  const Clock bound_clock = clock.share(kBoundShare);
+  const Clock plan_clock = clock.share(kPlanShare);
+  PlanReport answer{.world = world, .task = task, .policy = request.policy, .plan = {}};
+  std::unique_ptr<Planner> planner;
+  std::unique_ptr<Policy> policy;
+  if (request.own_planner) {
+    planner = request.own_planner();
+  } else if (request.own_policy) {
+    policy = request.own_policy();
+  } else {
+    const PolicySpec spec = spec_of(request);
+    answer.policy = spec.label;
+    planner = make_planner(spec, request.seed);
+    if (planner == nullptr) policy = make_policy(spec, request.seed);
+  }
+  const bool bounds = planner != nullptr && planner->bounds();
+  const double bound = bounds ? kNoLimit : max_prize(task, bound_clock);
+  answer.plan = planner != nullptr ? planner->plan(task, plan_clock) : plan_by_steps(world, task, *policy, plan_clock);
+  check_plan(world, task, answer.plan);
+  answer.plan.settle(bound);
+  answer.unreachable = count_unreachable(world, task.start());
+  answer.elapsed_s = watch.seconds();
+  return answer;
+}
+
+std::vector<std::string> plan_summary(const PlanReport& report) {
+  const World& world = report.world;
+  const Plan& plan = report.plan;
+  std::string length;
+  if (world.has_cells() && world.map()->frame) {
+    length = fmt::format(" ({:.4g} {})", plan.cost * world.map()->frame->cell_size, world.unit());
+  }
+  std::vector<std::string> lines = {fmt::format(
+      "visited {} of {} nodes, {:.1f} %, for {}{} of a budget of {}", plan.visited, world.valid_count(),
+      100.0 * plan.visited / world.valid_count(), decimal(plan.cost), length, decimal(report.task.budget()))};
+  if (world.has_prizes()) {
+    lines.push_back(fmt::format("prize {} of {}, {:.1f} %", decimal(plan.prize), decimal(world.total_prize()),
+                                world.percent_of_all(plan.prize)));
+  }
+  const char* const what = world.has_prizes() ? "is worth more" : "visits more";
+  if (plan.optimal) {
+    lines.push_back(fmt::format("optimal: no walk {}", what));
+  } else {
+    const std::string most = world.has_prizes() ? decimal(plan.bound) : fmt::format("{} nodes", report.max_visited());
+    lines.push_back(fmt::format("no walk {} than {}, {:.1f} %", what, most, world.percent_of_all(plan.bound)));
+  }
+  return lines;
+}
+
+}  // namespace graphdrl

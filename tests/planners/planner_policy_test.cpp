@@ -1,0 +1,107 @@
+#include "graphdrl/planners/planner_policy.h"
+
+#include <gmock/gmock.h>
+
+#include "graphdrl/env/walk.h"
+#include "graphdrl/planners/exact.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+// What is known of a path as its nodes are discovered.
+View path_known(int nodes, std::uint64_t version, std::uint64_t world) {
+  std::vector<Edge> edges;
+  for (NodeId node = 1; node < nodes; ++node) edges.push_back({node - 1, node});
+  Known known{.name = "path",
+              .version = version,
+              .world = world,
+              .open = Graph::from_edges(nodes, edges),
+              .blocked = std::vector<bool>(nodes)};
+  known.frontier.assign(nodes, false);
+  known.frontier.back() = true;
+  return make_known(std::move(known));
+}
+
+class CountingPlanner final : public Planner {
+ public:
+  explicit CountingPlanner(int& plans, int& from) : plans_(&plans), from_(&from) {}
+  Plan plan(const Task& task, const Clock& clock) override {
+    ++*plans_;
+    return exact_.plan(task, clock);
+  }
+  Plan plan_from(const Task& task, Plan known, const Clock& clock) override {
+    ++*from_;
+    return Planner::plan_from(task, std::move(known), clock);
+  }
+
+ private:
+  ExactPlanner exact_;
+  int* plans_;
+  int* from_;
+};
+
+// An observation at the end of a walk.
+struct Seen {
+  Seen(const View& view, std::vector<NodeId> nodes, double budget)
+      : task(view, nodes.front(), budget), walk(std::move(nodes)), visits(view.node_count()) {
+    now = {.task = &task,
+           .action_space = ActionSpace::kNeighbours,
+           .position = walk.back(),
+           .visits = visits,
+           .walk = walk,
+           .walk_hash = kEmptyWalkHash,
+           .visited_count = 0,
+           .spent = static_cast<double>(walk.size()) - 1,
+           .spendable = budget - (static_cast<double>(walk.size()) - 1)};
+    for (const NodeId node : walk) {
+      ++visits[node];
+      now.walk_hash = extended_walk_hash(now.walk_hash, node);
+    }
+  }
+  Task task;
+  std::vector<NodeId> walk;
+  std::vector<std::uint32_t> visits;
+  Observation now;
+};
+
+int chosen(PlannerPolicy& policy, const Seen& seen) {
+  int action = kStop;
+  policy.act({&seen.now, 1}, {&action, 1});
+  return action == kStop ? kNoNode : seen.now.target(action);
+}
+
+TEST(PlannerPolicy, PlansAnewOnceMoreIsKnown) {
+  int plans = 0;
+  int from = 0;
+  PlannerPolicy policy(std::make_unique<CountingPlanner>(plans, from));
+  const View first = path_known(3, 1, 0);
+  const Seen start(first, {0}, 6);
+  EXPECT_EQ(chosen(policy, start), 1);
+  EXPECT_EQ(chosen(policy, Seen(first, {0, 1}, 6)), 2) << "as planned";
+  EXPECT_EQ(plans, 1);
+  EXPECT_TRUE(first.is_frontier(2));
+  EXPECT_EQ(chosen(policy, Seen(first, {0, 1, 2}, 6)), kNoNode) << "nothing else is known";
+  // The same world, in which a fourth node has turned up.
+  const View later = path_known(4, 2, first.world());
+  EXPECT_TRUE(later.is_later_than(first));
+  EXPECT_FALSE(first == later);
+  EXPECT_EQ(chosen(policy, Seen(later, {0, 1, 2}, 6)), 3);
+  EXPECT_EQ(plans, 2);
+  EXPECT_EQ(from, 1) << "it goes on from the last plan";
+  EXPECT_EQ(chosen(policy, Seen(later, {0, 1, 2, 3}, 6)), kNoNode);
+  EXPECT_EQ(plans, 2);
+}
+
+TEST(PlannerPolicy, TakesNoPlanOfAnotherWorld) {
+  int plans = 0;
+  int from = 0;
+  PlannerPolicy policy(std::make_unique<CountingPlanner>(plans, from));
+  EXPECT_EQ(chosen(policy, Seen(path_known(3, 1, 0), {0}, 6)), 1);
+  EXPECT_EQ(chosen(policy, Seen(path_known(4, 2, 0), {0}, 6)), 1);
+  EXPECT_EQ(plans, 2);
+  EXPECT_EQ(from, 0);
+}
+
+}  // namespace
+}  // namespace graphdrl
