@@ -219,7 +219,8 @@ def bad_inputs(tmp_path, policy):
     for name, config in {"older": policy.parent / "config.json", "deep": tmp_path / "deep.json"}.items():
         (tmp_path / name).mkdir()
         shutil.copy(config, tmp_path / name / "config.json")
-        write_safetensors_metadata(tmp_path / name / "checkpoint.safetensors", {"progress": '{"episode": 25}'})
+    write_safetensors_metadata(tmp_path / "older" / "checkpoint.safetensors", {"progress": '{"episode": 25}'})
+    shutil.copy(policy.parent / "checkpoint.safetensors", tmp_path / "deep")
     (tmp_path / "file").write_text("")
     graph = {"nodes": [{"id": 0}, {"id": 1}], "links": [{"source": 0, "target": 1, "weight": 2}]}
     (tmp_path / "graph.json").write_text(json.dumps(graph))
@@ -355,7 +356,6 @@ def bad_inputs(tmp_path, policy):
         (["train", "--preset", "best", "--out", tmp_path / "new"], "--preset"),
         (["train", "--swiftly"], "--swiftly"),
         (["train", "--rounds", "0", "--out", tmp_path / "new"], "--rounds"),
-        (["train", "--teacher", "me", "--out", tmp_path / "new"], "--teacher"),
         (
             ["train", "--rounds", "3", "--episodes", "3", "--out", tmp_path / "new"],
             "--rounds is no option of the preset paper",

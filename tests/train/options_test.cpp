@@ -48,7 +48,6 @@ TEST(TrainOptions, AreChecked) {
               }),
               HasSubstr("--punish-blocked-by-visits"));
   EXPECT_THAT(explorer([](TrainOptions& o) { o.rounds = 0; }), HasSubstr("--rounds"));
-  EXPECT_THAT(explorer([](TrainOptions& o) { o.teacher = "me"; }), HasSubstr("search or double_dqn"));
   EXPECT_THAT(explorer([](TrainOptions& o) { o.replay_capacity = 63; }), HasSubstr("expected 64 to"));
   EXPECT_EQ(explorer([](TrainOptions& o) { o.replay_capacity = 64; }), "");
 }

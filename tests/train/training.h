@@ -15,7 +15,7 @@ namespace graphdrl {
 
 // What a test is listed as.
 inline void PrintTo(const TrainOptions& options, std::ostream* out) {
-  *out << options.preset << ' ' << options.algorithm << options.teacher;
+  *out << options.preset << ' ' << options.algorithm;
 }
 
 // Steps of `short_paper`. It asks whether to stop before each, and after each episode.

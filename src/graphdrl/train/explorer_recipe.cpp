@@ -27,7 +27,7 @@ std::uint64_t walk_seed(const TrainOptions& options, std::int64_t walk) {
 LessonOptions lesson_options(const TrainOptions& options) {
   LessonOptions lessons;
   lessons.worlds = training_worlds(static_cast<int>(options.largest));
-  lessons.teacher_steps = options.teacher == "search" ? static_cast<int>(options.teacher_steps) : 0;
+  lessons.teacher_steps = static_cast<int>(options.teacher_steps);
   lessons.lead = options.lead;
   return lessons;
 }
@@ -38,7 +38,7 @@ ExplorerRecipe::ExplorerRecipe(const TrainOptions& options, Rng& rng)
     : options_(options),
       rng_(rng),
       lesson_options_(lesson_options(options)),
-      learner_({.bootstrap = options.teacher == "double_dqn", .ranking = options.ranking}, rng_),
+      learner_(options.ranking, rng_),
       replay_(static_cast<std::size_t>(options.replay_capacity)) {}
 
 bool ExplorerRecipe::run_unit(TrainingProgress& progress, const std::function<bool()>& /*stop*/) {
@@ -52,7 +52,7 @@ void ExplorerRecipe::draw_lessons_of_round(TrainingProgress& progress) {
   std::vector<std::vector<Lesson>> drawn(static_cast<std::size_t>(walks));
   parallel_for(walks, [&](int walk) {
     drawn[walk] =
-        draw_lessons(lesson_options_, learner_.online(), walk_seed(options_, progress.done * options_.walks + walk));
+        draw_lessons(lesson_options_, learner_.parameters(), walk_seed(options_, progress.done * options_.walks + walk));
   });
   for (std::vector<Lesson>& lessons : drawn) {
     progress.samples += std::ssize(lessons);
@@ -88,12 +88,14 @@ std::vector<Metric> ExplorerRecipe::take_metrics(const TrainingProgress& progres
 }
 
 void ExplorerRecipe::save(CheckpointWriter& checkpoint) const {
-  checkpoint.add(learner_.state());
+  checkpoint.add("online.", learner_.parameters());
+  checkpoint.add(learner_.adam());
   replay_.save(checkpoint);
 }
 
 void ExplorerRecipe::restore(const Checkpoint& checkpoint, const TrainingProgress& progress) {
-  learner_.set_state(checkpoint.learned<ExplorerParameters>(trainable_count(ExplorerParameters::specs())));
+  learner_.set_state(checkpoint.parameters<ExplorerParameters>("online."),
+                     checkpoint.adam(trainable_count(ExplorerParameters::specs())));
   replay_.restore(checkpoint, lesson_options_);
   if (static_cast<std::int64_t>(replay_.size()) != std::min(progress.samples, options_.replay_capacity)) {
     checkpoint.fail("the checkpoint remembers another number of lessons than it has drawn");
@@ -101,7 +103,7 @@ void ExplorerRecipe::restore(const Checkpoint& checkpoint, const TrainingProgres
 }
 
 void ExplorerRecipe::write_policy(const std::filesystem::path& path) const {
-  write_policy_file(path, learner_.online());
+  write_policy_file(path, learner_.parameters());
 }
 
 }  // namespace graphdrl

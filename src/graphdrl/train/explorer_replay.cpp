@@ -11,7 +11,6 @@ namespace {
 struct Packed {
   std::vector<std::uint64_t> seed;
   std::vector<std::int64_t> position;
-  std::vector<std::int64_t> choice;
   std::vector<std::int64_t> scope;
   std::vector<double> spendable;
   std::vector<std::uint64_t> visited;
@@ -24,7 +23,6 @@ template <typename AnyPacked, typename Field>
 void for_each_array(AnyPacked& packed, const Field& field) {
   field("replay.seed", packed.seed);
   field("replay.position", packed.position);
-  field("replay.choice", packed.choice);
   field("replay.scope", packed.scope);
   field("replay.spendable", packed.spendable);
   field("replay.visited", packed.visited);
@@ -64,14 +62,11 @@ class Unpacker {
               .position = static_cast<NodeId>(position),
               .spendable = packed_.spendable[i],
               .scope = static_cast<int>(packed_.scope[i]),
-              .choice = static_cast<int>(packed_.choice[i]),
               .shortfall = {first_label, first_label + labels}};
     visited_at_ += words;
     label_at_ += static_cast<std::size_t>(labels);
     ExplorerBatch batch;
-    const auto visits = std::ssize(lesson.append_to(batch, encoder_));
-    const bool labelled = options_.teacher_steps > 0;
-    return labels == (labelled ? visits : 0) && packed_.choice[i] >= 0 && packed_.choice[i] < visits;
+    return labels == std::ssize(lesson.append_to(batch, encoder_));
   }
 
   // Whether nothing is left over.
@@ -103,7 +98,6 @@ void ExplorerReplay::save(CheckpointWriter& checkpoint) const {
   for (const Lesson& lesson : lessons_) {
     packed.seed.push_back(lesson.at->seed);
     packed.position.push_back(lesson.position);
-    packed.choice.push_back(lesson.choice);
     packed.scope.push_back(lesson.scope);
     packed.spendable.push_back(lesson.spendable);
     packed.visited.insert(packed.visited.end(), lesson.visited.words().begin(), lesson.visited.words().end());
@@ -122,8 +116,8 @@ void ExplorerReplay::restore(const Checkpoint& checkpoint, const LessonOptions& 
   for_each_array(packed,
                  [&]<typename T>(const char* name, std::vector<T>& values) { values = checkpoint.get<T>(name); });
   const std::size_t size = packed.seed.size();
-  for (const std::size_t other : {packed.position.size(), packed.choice.size(), packed.scope.size(),
-                                  packed.spendable.size(), packed.label_count.size()}) {
+  for (const std::size_t other :
+       {packed.position.size(), packed.scope.size(), packed.spendable.size(), packed.label_count.size()}) {
     require(other == size);
   }
   const std::int64_t next = checkpoint.get<std::int64_t>(kNext, {1}).front();

@@ -1,5 +1,6 @@
 #include "graphdrl/train/finished_runs.h"
 
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -32,7 +33,8 @@ FinishedRun read_finished_run(const RunDirectory& directory) {
   }
   const char* const counter = counter_of(run.options);
   const std::int64_t all = run.options.preset == kPaperPreset ? run.options.episodes : run.options.rounds;
-  const Checkpoint checkpoint = Checkpoint::read(directory.checkpoint(), run.options.preset);
+  const Checkpoint checkpoint = Checkpoint::read(directory.checkpoint());
+  checkpoint.require_preset(run.options.preset);
   const std::int64_t done = checkpoint.progress().done;
   if (run.options.preset == kPaperPreset) {
     for (const World& world : worlds_of(checkpoint)) run.maps.push_back(world.name());

@@ -85,8 +85,6 @@ std::vector<AnyOptionField> explorer_fields() {
       field(
           "largest", &O::largest, {.explorer = 26}, whole(5, 26),
           "Largest side of training grids (4 to 11, 13, 15, 16, 20, 26); graphs have up to seven times as many nodes"),
-      field("teacher", &O::teacher, {.explorer = "search"}, one_of({"search", "double_dqn"}),
-            "Where values come from: search, or double_dqn, bootstrapped from the network's own"),
       field("teacher_steps", &O::teacher_steps, {.explorer = 2}, whole(1, 1000),
             "Steps of the search that values a first visit, for each node left to visit"),
       field("ranking", &O::ranking, {.explorer = 1}, from_to(0.0, 1e3),

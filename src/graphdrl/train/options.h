@@ -28,7 +28,6 @@ struct TrainOptions {
   // Of the explorer.
   std::int64_t rounds = 0;
   std::int64_t largest = 0;
-  std::string teacher;
   std::int64_t teacher_steps = 0;
   double ranking = 0;
   double lead = 0;

@@ -11,7 +11,7 @@
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/nn/paper_network.h"
-#include "graphdrl/train/checkpoint.h"
+#include "graphdrl/train/adam.h"
 #include "graphdrl/train/paper_minibatch.h"
 
 namespace graphdrl {
@@ -26,7 +26,11 @@ struct PaperLearnerOptions {
 };
 
 // The same whatever device the learner runs on.
-using PaperState = LearnedState<PaperParameters>;
+struct PaperState {
+  PaperParameters online;
+  PaperParameters target;
+  AdamState adam;
+};
 
 class PaperLearner {
  public:

@@ -40,8 +40,9 @@ std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDi
 }
 
 std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const MakePaperLearner& make_learner) {
+  const Checkpoint checkpoint = Checkpoint::read(run.checkpoint());
   const TrainOptions options = read_config(run.config());
-  const Checkpoint checkpoint = Checkpoint::read(run.checkpoint(), options.preset);
+  checkpoint.require_preset(options.preset);
   return std::unique_ptr<Trainer>(new Trainer(options, run, &checkpoint, make_learner, {}));
 }
 
