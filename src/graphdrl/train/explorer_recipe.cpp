@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "graphdrl/base/parallel.h"
@@ -42,25 +43,25 @@ ExplorerRecipe::ExplorerRecipe(const TrainOptions& options, Rng& rng)
       replay_(static_cast<std::size_t>(options.replay_capacity)) {}
 
 bool ExplorerRecipe::run_unit(TrainingProgress& progress, const std::function<bool()>& /*stop*/) {
-  draw_lessons_of_round(progress);
-  learn_round(progress.done);
+  std::vector<Lesson> lessons = draw(progress.done);
+  progress.samples += std::ssize(lessons);
+  learn(progress.done, std::move(lessons));
   return true;
 }
 
-void ExplorerRecipe::draw_lessons_of_round(TrainingProgress& progress) {
+std::vector<Lesson> ExplorerRecipe::draw(std::int64_t round) const {
   const int walks = static_cast<int>(options_.walks);
-  std::vector<std::vector<Lesson>> drawn(static_cast<std::size_t>(walks));
+  std::vector<std::vector<Lesson>> by_walk(static_cast<std::size_t>(walks));
   parallel_for(walks, [&](int walk) {
-    drawn[walk] =
-        draw_lessons(lesson_options_, learner_.parameters(), walk_seed(options_, progress.done * options_.walks + walk));
+    by_walk[walk] = draw_lessons(lesson_options_, learner_.parameters(), walk_seed(options_, round * walks + walk));
   });
-  for (std::vector<Lesson>& lessons : drawn) {
-    progress.samples += std::ssize(lessons);
-    for (Lesson& lesson : lessons) replay_.push(std::move(lesson));
-  }
+  std::vector<Lesson> lessons;
+  for (std::vector<Lesson>& of_walk : by_walk) std::move(of_walk.begin(), of_walk.end(), std::back_inserter(lessons));
+  return lessons;
 }
 
-void ExplorerRecipe::learn_round(std::int64_t round) {
+void ExplorerRecipe::learn(std::int64_t round, std::vector<Lesson> lessons) {
+  for (Lesson& lesson : lessons) replay_.push(std::move(lesson));
   loss_ = regret_ = 0;
   std::vector<const Lesson*> picked(static_cast<std::size_t>(options_.batch_size));
   const auto updates = static_cast<double>(options_.updates);
