@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "graphdrl/nn/paper_features.h"
-#include "graphdrl/train/paper_q_network.h"
 
 namespace graphdrl {
 
