@@ -14,7 +14,6 @@ class ExplorerRecipe final : public Recipe {
   // `rng` must outlive it.
   ExplorerRecipe(const TrainOptions& options, Rng& rng);
 
-  Units units() const override { return {.name = "round", .count = options_.rounds, .samples = "states"}; }
   // One round, whole: draw() and learn().
   bool run_unit(TrainingProgress& progress, const std::function<bool()>& stop) override;
   std::string status(const TrainingProgress& progress) const override;

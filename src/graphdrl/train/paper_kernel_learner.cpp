@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/train/learner_source.h"
 #include "graphdrl/train/paper_td_target.h"
 
 namespace graphdrl {
@@ -66,10 +67,15 @@ void PaperKernelLearner::set_state(const PaperState& state) {
   update();
 }
 
-std::unique_ptr<PaperLearner> make_paper_cpu_learner(const std::string& device, const PaperLearnerOptions& options,
-                                                     Rng& rng) {
+std::unique_ptr<PaperLearner> LearnerSource::make(const std::string& device, const PaperLearnerOptions& options,
+                                                  Rng& rng) const {
   if (device == "cpu") return std::make_unique<PaperKernelLearner>(options, rng);
   throw Error({.what = "this program trains on the CPU alone", .expected = "cpu", .got = device, .where = "--device"});
+}
+
+std::vector<std::unique_ptr<LearnerSource>> LearnerSource::make_together(const std::string& /*device*/,
+                                                                         int /*trainings*/) const {
+  return {};
 }
 
 }  // namespace graphdrl

@@ -60,12 +60,12 @@ std::size_t largest(const std::vector<World>& worlds) {
 }  // namespace
 
 PaperRecipe::PaperRecipe(const TrainOptions& options, Rng& rng, std::vector<World> worlds,
-                         const MakePaperLearner& make_learner)
+                         const LearnerSource& learners)
     : options_(options),
       rng_(rng),
       worlds_(checked(std::move(worlds), options)),
       encoders_(worlds_.begin(), worlds_.end()),
-      learner_(make_learner(options.device, learner_options(options), rng_)),
+      learner_(learners.make(options.device, learner_options(options), rng_)),
       replay_(static_cast<std::size_t>(options.replay_capacity), largest(worlds_)) {
   for (const World& world : worlds_) episodes_.emplace_back(world, episode_options(options_, world));
 }
