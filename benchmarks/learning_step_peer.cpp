@@ -50,7 +50,7 @@ int serve(const std::string& file, int threads) {
   batch.clear();
   for (std::size_t i = 0; i < kBatchSize; ++i) append_transition(replay, i, encoders.front(), batch);
   const std::vector<float> keep_scale = draw_keep_scale(kBatchSize, kHiddenWidth, 0.5, rng);
-  const PaperParameters weights = learner.online().parameters();
+  const PaperParameters weights = learner.online();
   const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
 
   std::vector<TensorView> tensors = weights.views();

@@ -52,7 +52,7 @@ bool train(Trainer& trainer, const nb::object& on_metrics) {
 bool start(const std::string& out, const std::string& options, const std::vector<World>& worlds,
            const nb::object& on_metrics) {
   const TrainOptions parsed = parse_options(nlohmann::ordered_json::parse(options), "train");
-  const auto trainer = Trainer::start(parsed, RunDirectory(out), make_paper_cpu_learner, worlds);
+  const auto trainer = Trainer::start(parsed, RunDirectory(out), kCpuLearners, worlds);
   return train(*trainer, on_metrics);
 }
 

@@ -219,7 +219,8 @@ def bad_inputs(tmp_path, policy):
     for name, config in {"older": policy.parent / "config.json", "deep": tmp_path / "deep.json"}.items():
         (tmp_path / name).mkdir()
         shutil.copy(config, tmp_path / name / "config.json")
-        write_safetensors_metadata(tmp_path / name / "checkpoint.safetensors", {"progress": '{"episode": 25}'})
+    write_safetensors_metadata(tmp_path / "older" / "checkpoint.safetensors", {"progress": '{"episode": 25}'})
+    shutil.copy(policy.parent / "checkpoint.safetensors", tmp_path / "deep")
     (tmp_path / "file").write_text("")
     graph = {"nodes": [{"id": 0}, {"id": 1}], "links": [{"source": 0, "target": 1, "weight": 2}]}
     (tmp_path / "graph.json").write_text(json.dumps(graph))
@@ -355,7 +356,6 @@ def bad_inputs(tmp_path, policy):
         (["train", "--preset", "best", "--out", tmp_path / "new"], "--preset"),
         (["train", "--swiftly"], "--swiftly"),
         (["train", "--rounds", "0", "--out", tmp_path / "new"], "--rounds"),
-        (["train", "--teacher", "me", "--out", tmp_path / "new"], "--teacher"),
         (
             ["train", "--rounds", "3", "--episodes", "3", "--out", tmp_path / "new"],
             "--rounds is no option of the preset paper",
@@ -569,18 +569,10 @@ def test_network_policies_take_large_maps(run, trained, tmp_path):
 
 def test_bench_gives_the_documented_keys_and_one_signature(run):
     first = json.loads(run("graphdrl", "bench", "--json").stdout)
-    assert (
-        list(first)
-        == "signature signature_learned env_steps_per_s move_ms learning_step_ms products_share gemm_share".split()
-    )
-    shares = ["products_share", "gemm_share"] if WITH_TORCH else ["products_share"]
-    for key in ("env_steps_per_s", "learning_step_ms", *shares):
+    assert list(first) == "signature signature_learned env_steps_per_s move_ms learning_step_ms".split()
+    for key in ("env_steps_per_s", "learning_step_ms"):
         assert list(first[key]) == ["1", "2"] and all(value > 0 for value in first[key].values())
-    assert all(share < 1 for share in first["products_share"].values())
-    if not WITH_TORCH:  # nor OpenBLAS
-        assert first["gemm_share"] is None
-    text = run("graphdrl", "bench").stdout
-    assert first["signature"] in text and ("sgemm" in text) == WITH_TORCH
+    assert first["signature"] in run("graphdrl", "bench").stdout
 
 
 def plan(run, *arguments):

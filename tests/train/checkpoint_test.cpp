@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "graphdrl/nn/paper_network.h"
 #include "train/training.h"
 
 namespace graphdrl {
@@ -13,25 +14,32 @@ using ::testing::HasSubstr;
 std::string error_with(const Metadata& metadata) {
   const TemporaryFolder folder;
   write_safetensors(folder / "c", {}, metadata);
-  return error_of([&] { Checkpoint::read(folder / "c", kPaperPreset).progress(); });
+  return error_of([&] {
+    const Checkpoint checkpoint = Checkpoint::read(folder / "c");
+    checkpoint.require_preset(kPaperPreset);
+    checkpoint.progress();
+  });
 }
 
 constexpr const char* kProgress = R"({"done": 3, "samples": 40, "elapsed_s": 1.5})";
 
 TEST(Checkpoint, OfAnotherVersionOrPresetIsRefusedInOneLine) {
-  const std::string layout = std::to_string(kCheckpointLayout);
+  const std::string layout = std::to_string(kPaperLayout);
   EXPECT_EQ(error_with({{"layout", layout}, {"preset", "paper"}, {"progress", kProgress}}), "");
   EXPECT_THAT(error_with({{"progress", R"({"episode": 3})"}}),
               HasSubstr("begin anew: expected layout 2, got an older one"));
   EXPECT_THAT(error_with({{"layout", "99"}, {"preset", "paper"}, {"progress", kProgress}}), HasSubstr("got '99'"));
+  // An explorer's of before, which has more arrays.
   EXPECT_THAT(error_with({{"layout", layout}, {"preset", "explorer"}, {"progress", kProgress}}),
+              HasSubstr("begin anew: expected layout 3, got '2'"));
+  EXPECT_THAT(error_with({{"layout", "3"}, {"preset", "explorer"}, {"progress", kProgress}}),
               HasSubstr("another preset than config.json's: expected paper, got 'explorer'"));
   EXPECT_THAT(error_with({}), HasSubstr("not a checkpoint"));
 }
 
 TEST(Checkpoint, WithBadProgressIsRefused) {
   const auto error_of_progress = [](const std::string& progress) {
-    return error_with({{"layout", std::to_string(kCheckpointLayout)}, {"preset", "paper"}, {"progress", progress}});
+    return error_with({{"layout", std::to_string(kPaperLayout)}, {"preset", "paper"}, {"progress", progress}});
   };
   EXPECT_THAT(error_of_progress("{"), HasSubstr("no number 'done'"));
   EXPECT_THAT(error_of_progress(R"({"done": -3, "samples": 40, "elapsed_s": 1.5})"), HasSubstr("no number 'done'"));
@@ -45,30 +53,33 @@ TEST(Checkpoint, WithBadProgressIsRefused) {
 TEST(Checkpoint, HoldsWhatWasWritten) {
   const TemporaryFolder folder;
   Rng rng(5);
-  LearnedState<PaperParameters> state{.online = PaperParameters(rng), .target = PaperParameters(rng), .adam = {}};
+  const PaperParameters online(rng);
+  const PaperParameters target(rng);
   const std::size_t count = PaperParameters::trainable_count();
-  state.adam = AdamState(count);
-  state.adam.exp_avg[3] = -2;
-  state.adam.exp_avg_sq[4] = 3;
-  state.adam.steps = 17;
+  AdamState adam(count);
+  adam.exp_avg[3] = -2;
+  adam.exp_avg_sq[4] = 3;
+  adam.steps = 17;
   CheckpointWriter writer(kPaperPreset);
   writer.add(TrainingProgress{.done = 3, .samples = 40, .elapsed_s = 1.5});
   writer.add(rng);
-  writer.add(state);
+  writer.add("online.", online);
+  writer.add("target.", target);
+  writer.add(adam);
   writer.write(folder / "c");
 
-  const Checkpoint read = Checkpoint::read(folder / "c", kPaperPreset);
+  const Checkpoint read = Checkpoint::read(folder / "c");
   EXPECT_EQ(read.progress().done, 3);
   EXPECT_EQ(read.progress().samples, 40);
   EXPECT_EQ(read.progress().elapsed_s, 1.5);
   EXPECT_EQ(read.rng().state(), rng.state());
-  const auto learned = read.learned<PaperParameters>(count);
-  EXPECT_TRUE(std::ranges::equal(learned.online.values(), state.online.values()));
-  EXPECT_TRUE(std::ranges::equal(learned.target.values(), state.target.values()));
-  EXPECT_EQ(learned.adam.exp_avg, state.adam.exp_avg);
-  EXPECT_EQ(learned.adam.exp_avg_sq, state.adam.exp_avg_sq);
-  EXPECT_EQ(learned.adam.steps, 17);
-  EXPECT_THAT(error_of([&] { read.learned<PaperParameters>(count - 1); }), HasSubstr("wrong shape"));
+  EXPECT_TRUE(std::ranges::equal(read.parameters<PaperParameters>("online.").values(), online.values()));
+  EXPECT_TRUE(std::ranges::equal(read.parameters<PaperParameters>("target.").values(), target.values()));
+  const AdamState learned = read.adam(count);
+  EXPECT_EQ(learned.exp_avg, adam.exp_avg);
+  EXPECT_EQ(learned.exp_avg_sq, adam.exp_avg_sq);
+  EXPECT_EQ(learned.steps, 17);
+  EXPECT_THAT(error_of([&] { read.adam(count - 1); }), HasSubstr("wrong shape"));
 }
 
 }  // namespace

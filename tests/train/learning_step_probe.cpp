@@ -15,16 +15,15 @@ namespace {
 constexpr double kDiscount = 0.99;
 
 // Another network's values with batch norm statistics that are not the initial ones, so that none of them cancels out.
-void disturb(PaperQNetwork& network, Rng& rng) {
-  PaperParameters other(rng);
+PaperParameters disturbed(Rng& rng) {
+  PaperParameters parameters(rng);
   for (const TensorSpec& spec : PaperParameters::specs()) {
-    float* const values = network.parameters().tensor(spec.name);
-    for (std::size_t i = 0; i < spec.size; ++i) {
-      values[i] = other.values()[spec.offset + i];
-      if (spec.name.starts_with("bn")) values[i] += 0.5f * static_cast<float>(rng.uniform());
+    if (!spec.name.starts_with("bn")) continue;
+    for (float& value : parameters.values().subspan(spec.offset, spec.size)) {
+      value += 0.5f * static_cast<float>(rng.uniform());
     }
   }
-  network.update();
+  return parameters;
 }
 
 struct Probe {
@@ -74,11 +73,12 @@ int write_probe(const std::string& out, bool double_dqn) {
   }
 
   PaperKernelLearner learner({.double_dqn = double_dqn, .discount = kDiscount}, rng);
-  disturb(learner.online(), rng);
-  disturb(learner.target(), rng);
+  PaperState state = learner.state();
+  state.online = disturbed(rng);
+  state.target = disturbed(rng);
+  learner.set_state(state);
   std::vector<float> q(batch.actions.size() * kActionCount);
-  learner.online().q_values(batch.graphs, batch.x, q);
-  const PaperParameters online = learner.online().parameters();  // before the running statistics move
+  learner.q_values(batch.graphs, batch.x, q);
   const std::vector<float> keep_scale = draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, 0.5, rng);
   const std::vector<double> loss = {learner.compute_gradients(batch, keep_scale)};
 
@@ -104,9 +104,9 @@ int write_probe(const std::string& out, bool double_dqn) {
   add("q", {b, kActionCount}, q);
   add("loss", {1}, loss);
   for (const auto& [prefix, parameters] :
-       {std::pair("online.", &online), std::pair("grad.", &learner.online().gradients()),
-        std::pair("target.", &std::as_const(learner.target().parameters())),
-        std::pair("after.", &std::as_const(learner.online().parameters()))}) {
+       {std::pair("online.", &std::as_const(state.online)),  // before the running statistics move
+        std::pair("grad.", &learner.gradients()), std::pair("target.", &learner.target()),
+        std::pair("after.", &learner.online())}) {
     for (const TensorView& view : parameters->views(prefix)) tensors.push_back(view);
   }
   write_safetensors(out, tensors, {});

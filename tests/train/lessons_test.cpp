@@ -1,7 +1,9 @@
-#include "graphdrl/train/lessons.h"
+#include "graphdrl/train/lesson_arrays.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "graphdrl/planners/exact.h"
@@ -38,6 +40,31 @@ TEST(Lessons, OfSmallWorldsAreWorthWhatExactSearchSays) {
     }
   }
   EXPECT_GT(checked, 300);
+}
+
+TEST(LessonArrays, GiveBackTheLessonsOrNone) {
+  const LessonOptions options{.worlds = {{"obstacles", 4}, {"tree", 10}}, .teacher_steps = 1};
+  Rng rng(1);
+  const std::vector<Lesson> lessons = draw_lessons(options, ExplorerParameters(rng), 5);
+  ASSERT_GT(lessons.size(), 1u);
+  LessonArrays arrays;
+  for (const Lesson& lesson : lessons) arrays.add(lesson);
+  const auto same_bits = [](float one, float other) {  // a label may be not a number
+    return std::bit_cast<std::uint32_t>(one) == std::bit_cast<std::uint32_t>(other);
+  };
+  const std::vector<Lesson> back = arrays.lessons(options).value();
+  ASSERT_EQ(back.size(), lessons.size());
+  for (std::size_t i = 0; i < back.size(); ++i) {
+    EXPECT_EQ(back[i].at->seed, 5u);
+    EXPECT_EQ(back[i].at, back[0].at) << "one world";
+    EXPECT_EQ(back[i].visited.count(), lessons[i].visited.count());
+    EXPECT_EQ(back[i].position, lessons[i].position);
+    EXPECT_EQ(back[i].spendable, lessons[i].spendable);
+    EXPECT_EQ(back[i].scope, lessons[i].scope);
+    EXPECT_TRUE(std::ranges::equal(back[i].shortfall, lessons[i].shortfall, same_bits));
+  }
+  arrays.label.push_back(0);
+  EXPECT_FALSE(arrays.lessons(options)) << "more labels than first visits";
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(PaperReplayBuffer, IsADequeOfItsCapacityAndSurvivesACheckpoint) {
     }
     save(buffer, folder / "c");
     PaperReplayBuffer restored(kCapacity, kNodes);
-    restored.restore(Checkpoint::read(folder / "c", "paper"), [](const Transition&) { return true; });
+    restored.restore(Checkpoint::read(folder / "c"), [](const Transition&) { return true; });
     buffer = restored;  // and all goes on from there
   }
 }
@@ -75,7 +75,7 @@ TEST(PaperReplayBuffer, RefusesACheckpointThatDoesNotFit) {
   PaperReplayBuffer buffer(4, 3);
   for (int i = 0; i < 4; ++i) buffer.push({}, std::vector<std::uint32_t>{1, 2, 3});
   save(buffer, folder / "c");
-  const Checkpoint file = Checkpoint::read(folder / "c", "paper");
+  const Checkpoint file = Checkpoint::read(folder / "c");
   const auto any = [](const Transition&) { return true; };
   EXPECT_NE(error_of([&] { PaperReplayBuffer(3, 3).restore(file, any); }), "");
   EXPECT_NE(error_of([&] { PaperReplayBuffer(4, 2).restore(file, any); }), "");

@@ -1,38 +1,63 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 #include <memory>
 
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/bench.h"
 #include "graphdrl/eval/statistics.h"
-#include "graphdrl/train/learning_step_bench.h"
-
-#ifdef GRAPHDRL_OPENBLAS
-#include <cblas.h>
-#endif
+#include "graphdrl/train/paper_kernel_learner.h"
 
 namespace graphdrl {
 namespace {
 
 constexpr std::array kThreadCounts = {1, 2};
 constexpr int kRounds = 15;
+constexpr int kSteps = 8;  // learning steps a round
+constexpr std::int64_t kBatchSize = 32;
+constexpr int kReplayEpisodes = 200;
 
-// OpenBLAS's product on one thread, in builds that have it.
-GemmFunction openblas_product() {
-#ifdef GRAPHDRL_OPENBLAS
-  return [](const GemmShape& shape, const float* a, const float* b, float* c) {
-    // OpenBLAS on OpenMP keeps its number of threads by the thread that calls it.
-    thread_local const bool alone = (openblas_set_num_threads(1), true);
-    static_cast<void>(alone);
-    cblas_sgemm(CblasRowMajor, shape.a_transposed ? CblasTrans : CblasNoTrans, CblasNoTrans, shape.m, shape.n, shape.k,
-                1.0f, a, shape.lda, b, shape.n, 0.0f, c, shape.ldc);
-  };
-#else
-  return nullptr;
-#endif
+// Of random moves.
+PaperReplayBuffer random_replay(const World& world, Rng& rng) {
+  PaperReplayBuffer replay(100'000, static_cast<std::size_t>(world.graph().node_count()));
+  Episode episode(world, {});
+  for (int i = 0; i < kReplayEpisodes; ++i) {
+    episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
+    while (!episode.done()) {
+      const std::vector<std::uint32_t> visits = episode.visits();
+      const NodeId from = episode.position();
+      const auto action = static_cast<std::int32_t>(rng.below(kActionCount));
+      const auto reward = static_cast<float>(episode.step(action).reward);
+      replay.push({0, from, action, episode.position(), reward, /*terminal=*/false}, visits);
+    }
+  }
+  return replay;
+}
+
+// The median time of a learning step of the preset `paper`: sample, features, both forward passes, backward, Adam, soft
+// update.
+double learning_step_ms() {
+  const World world = load_one_world("paper:a");
+  const std::vector<PaperFeatureEncoder> encoders = {PaperFeatureEncoder(world)};
+  Rng rng(1);
+  const PaperReplayBuffer replay = random_replay(world, rng);
+  PaperKernelLearner learner({}, rng);
+  PaperMinibatch batch;
+  std::vector<double> step_ms;
+  for (int round = 0; round <= kRounds; ++round) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < kSteps; ++i) {
+      sample_minibatch(replay, encoders, kBatchSize, rng, batch);
+      learner.learn(batch, rng);
+    }
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    if (round > 0) step_ms.push_back(elapsed.count() / kSteps);  // the first one finds no memory yet
+  }
+  return median(step_ms);
 }
 
 Json run_bench() {
@@ -55,15 +80,9 @@ Json run_bench() {
     json["env_steps_per_s"][std::to_string(kThreadCounts[i])] = median(steps_per_s[i]);
   }
   json["move_ms"] = bench_move_ms();
-  json["learning_step_ms"] = Json::object();
-  json["products_share"] = Json::object();
-  json["gemm_share"] = nullptr;
   for (const int count : kThreadCounts) {
-    const LearningStepTime time = time_learning_step(count, openblas_product());
-    const std::string key = std::to_string(count);
-    json["learning_step_ms"][key] = time.step_ms;
-    json["products_share"][key] = time.products_ms / time.step_ms;
-    if (time.other_products_ms) json["gemm_share"][key] = *time.other_products_ms / time.step_ms;
+    set_threads(count);
+    json["learning_step_ms"][std::to_string(count)] = learning_step_ms();
   }
   return json;
 }
@@ -81,8 +100,6 @@ std::string format_bench(const Json& json) {
   line("environment steps", "env_steps_per_s", 1e-6, " million/s");
   text += fmt::format("{:20}  {}\n", "choosing one move", number(json["move_ms"], 1, " ms"));
   line("learning step", "learning_step_ms", 1, " ms");
-  line("its products alone", "products_share", 100, " % of it");
-  if (!json["gemm_share"].is_null()) line("by OpenBLAS's sgemm", "gemm_share", 100, " % of it");
   return text;
 }
 

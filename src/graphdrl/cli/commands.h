@@ -1,9 +1,9 @@
-// The subcommands of `graphdrl`, one per source file beside this one.
+// The subcommands of `graphdrl`, one per source file beside this one. `learners` must outlive the app.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
-#include "graphdrl/train/paper_learner.h"
+#include "graphdrl/train/learner_source.h"
 
 namespace graphdrl {
 
@@ -17,9 +17,7 @@ void add_maps_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_results_command(CLI::App& app);
-void add_train_command(CLI::App& app);
-// Also a command of graphdrl-train, which passes make_group.
-void add_tune_command(CLI::App& app, const MakePaperLearner& make_learner,
-                      const MakePaperLearnerGroup& make_group = {});
+void add_train_command(CLI::App& app, const LearnerSource& learners);
+void add_tune_command(CLI::App& app, const LearnerSource& learners);  // of graphdrl-train, too
 
 }  // namespace graphdrl

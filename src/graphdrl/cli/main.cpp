@@ -8,8 +8,9 @@ int main(int argc, char** argv) {
                "graphdrl"};
   app.set_version_flag("--version", GRAPHDRL_VERSION);
   app.require_subcommand(1);
-  graphdrl::add_train_command(app);
-  graphdrl::add_tune_command(app, graphdrl::learner_or_torch_program({argv + 1, argv + argc}));
+  const graphdrl::CpuOrTorchProgram learners({argv + 1, argv + argc});
+  graphdrl::add_train_command(app, learners);
+  graphdrl::add_tune_command(app, learners);
   graphdrl::add_evaluate_command(app);
   graphdrl::add_plan_command(app);
   graphdrl::add_check_command(app);

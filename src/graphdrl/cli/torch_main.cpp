@@ -10,10 +10,9 @@
 // NOLINTNEXTLINE(bugprone-exception-escape): before the arguments are read only memory can run out
 int main(int argc, char** argv) {
   using namespace graphdrl;
-  if (argc < 2 || std::string_view(argv[1]) != "tune") {
-    return run_train_command({argv + 1, argv + argc}, make_paper_device_learner, make_paper_stack);
-  }
+  const DeviceLearners learners;
+  if (argc < 2 || std::string_view(argv[1]) != "tune") return run_train_command({argv + 1, argv + argc}, learners);
   CLI::App app{"Training of GraphDRL on a GPU", "graphdrl"};
-  add_tune_command(app, make_paper_device_learner, make_paper_stack);
+  add_tune_command(app, learners);
   return run_program(app, argc, argv);
 }

@@ -4,15 +4,14 @@
 
 namespace graphdrl {
 
-void add_train_command(CLI::App& app) {
+void add_train_command(CLI::App& app, const LearnerSource& learners) {
   CLI::App* const command =
       app.add_subcommand("train", "Train a policy, and write a run directory (train --help has the options)");
   // It has a parser of its own: CLI11 reads configuration files for whole programs only.
   command->prefix_command();
   command->set_help_flag();
-  command->callback([command] {
-    const std::vector<std::string> arguments = command->remaining();
-    const int status = run_train_command(arguments, learner_or_torch_program(arguments));
+  command->callback([command, &learners] {
+    const int status = run_train_command(command->remaining(), learners);
     if (status != kExitDone) throw CLI::RuntimeError(status);
   });
 }

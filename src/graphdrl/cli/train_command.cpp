@@ -19,6 +19,7 @@
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/options.h"
+#include "graphdrl/train/paper_learner.h"
 #include "graphdrl/train/seed_runs.h"
 #include "graphdrl/train/trainer.h"
 
@@ -34,10 +35,12 @@ extern "C" void remember_signal(int signal) {
 
 constexpr const char* kTorchProgram = "graphdrl-train";
 
+// `train` is what graphdrl-train does unless it is told `tune`.
 [[noreturn]] void become_torch_program(const std::string& device, const std::vector<std::string>& arguments) {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / kTorchProgram;
   std::vector<char*> argv = {const_cast<char*>(kTorchProgram)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  if (arguments.front() == "train") argv.erase(argv.begin() + 1);
   argv.push_back(nullptr);
   execv(program.c_str(), argv.data());
   throw Error({.what = "training on " + device + " needs graphdrl-train beside graphdrl (" + std::strerror(errno) + ")",
@@ -102,14 +105,13 @@ class OptionFlags {
  private:
   template <typename T>
   void add(CLI::App& app, const OptionField<T>& option) {
-    const auto& [explorer, paper] = option.defaults;
     T& value = given_.*option.member;
-    value = explorer ? *explorer : *paper;
     CLI::Option* const flag = add_flag(app, flag_of(option.key), value, option.help)->capture_default_str();
-    if (!explorer) of_paper_.push_back(flag->group("Of the preset paper"));
-    if (!paper) of_explorer_.push_back(flag->group("Of the preset explorer"));
-    if (explorer && paper && *explorer != *paper && flag->get_name() != "--preset") {
-      flag->description(fmt::format("{} (paper: {})", flag->get_description(), Json(*paper).dump()));
+    if (option.preset == kPaperPreset) of_paper_.push_back(flag->group("Of the preset paper"));
+    if (option.preset == kExplorerPreset) of_explorer_.push_back(flag->group("Of the preset explorer"));
+    const T of_paper = default_options(kPaperPreset).*option.member;
+    if (option.preset.empty() && value != of_paper && flag->get_name() != "--preset") {
+      flag->description(fmt::format("{} (paper: {})", flag->get_description(), Json(of_paper).dump()));
     }
     copies_.push_back([flag, &value, member = option.member](TrainOptions& options) {
       if (flag->count() > 0) options.*member = value;
@@ -147,7 +149,7 @@ class OptionFlags {
   throw CLI::RuntimeError(128 + stop_signal);
 }
 
-Json report_of(const RunDirectory& run, const TrainingProgress& progress, const Recipe::Units& units) {
+Json report_of(const RunDirectory& run, const TrainingProgress& progress, const TrainingUnits& units) {
   return {{"run", run.path().string()},
           {units.name + 's', progress.done},
           {units.samples, progress.samples},
@@ -159,7 +161,7 @@ Json report_of(const RunDirectory& run, const TrainingProgress& progress, const 
 void train(Trainer& trainer, bool json) {
   const std::string run = trainer.run_directory().path().string();
   const TrainingProgress& progress = trainer.progress();
-  const Recipe::Units& units = trainer.units();
+  const TrainingUnits& units = trainer.units();
   catch_training_signals();
   ProgressDisplay display(stderr, units.name, progress.done);
   const bool finished = trainer.run([] { return stop_signal != 0; },
@@ -176,9 +178,9 @@ void train(Trainer& trainer, bool json) {
 }
 
 // The same of many seeds.
-void train(SeedRuns& seeds, bool json) {
+void train(SeedRuns& seeds, const LearnerSource& learners, bool json) {
   SideBySide& trainings = seeds.trainings();
-  const Recipe::Units& units = trainings.units();
+  const TrainingUnits& units = trainings.units();
   std::int64_t before = 0;
   int seeds_done = 0;
   for (const TrainingProgress& progress : trainings.progress()) {
@@ -196,7 +198,8 @@ void train(SeedRuns& seeds, bool json) {
                                                      fmt::format("{} of {} seeds done  {:.0f} {}/s", seeds_done, count,
                                                                  news.samples_per_s, units.samples),
                                                      last);
-                                      });
+                                      },
+                                      learners);
   display.finish();
   if (!finished) leave_stopped(fmt::format("{} of {} seeds", seeds_done, count), seeds.folder().string());
   Json reports = Json::array();
@@ -223,8 +226,7 @@ void refuse_beside_resume(const std::vector<CLI::Option*>& options, const std::s
 // The parser of the arguments after `train`, and what they say.
 class TrainProgram {
  public:
-  explicit TrainProgram(MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {})
-      : make_learner_(std::move(make_learner)), make_group_(std::move(make_group)), flags_(app_, command_.given) {
+  explicit TrainProgram(const LearnerSource& learners) : learners_(learners), flags_(app_, command_.given) {
     app_.add_option("--seeds", command_.seeds,
                     "Independent runs of many seeds, as 1-8 or 1,4,7-9, each in RUN/seed-N: on the cpu one a thread, "
                     "each with the bytes that it would have alone; on cuda all together")
@@ -253,22 +255,21 @@ class TrainProgram {
     if (resume_->count() > 0) {
       refuse_beside_resume(of_new_runs_, command_.resume);
       if (SeedRuns::are_in(command_.resume)) {
-        SeedRuns runs = SeedRuns::resume(command_.resume, make_learner_, make_group_);
-        return train(runs, command_.json);
+        SeedRuns runs = SeedRuns::resume(command_.resume);
+        return train(runs, learners_, command_.json);
       }
-      return train(*Trainer::resume(RunDirectory(command_.resume), make_learner_), command_.json);
+      return train(*Trainer::resume(RunDirectory(command_.resume), learners_), command_.json);
     }
     const TrainOptions options = flags_.resolve();
     const std::string out = command_.out.empty() ? "runs/" + options.preset : command_.out;
     if (!command_.seeds.empty()) {
-      SeedRuns runs = SeedRuns::start(options, parse_seeds(command_.seeds), out, make_learner_, make_group_);
-      return train(runs, command_.json);
+      SeedRuns runs = SeedRuns::start(options, parse_seeds(command_.seeds), out, learners_);
+      return train(runs, learners_, command_.json);
     }
-    train(*Trainer::start(options, RunDirectory(out), make_learner_), command_.json);
+    train(*Trainer::start(options, RunDirectory(out), learners_), command_.json);
   }
 
-  MakePaperLearner make_learner_;
-  MakePaperLearnerGroup make_group_;
+  const LearnerSource& learners_;
   CLI::App app_{
       "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
       "graphdrl train"};
@@ -280,19 +281,24 @@ class TrainProgram {
 
 }  // namespace
 
-int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner,
-                      const MakePaperLearnerGroup& make_group) {
-  TrainProgram program(make_learner, make_group);
+int run_train_command(const std::vector<std::string>& arguments, const LearnerSource& learners) {
+  TrainProgram program(learners);
   std::vector<const char*> argv = {"graphdrl train"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   return run_program(program.app(), static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
 }
 
-MakePaperLearner learner_or_torch_program(std::vector<std::string> arguments) {
-  return [arguments = std::move(arguments)](const std::string& device, const PaperLearnerOptions& options, Rng& rng) {
-    if (device != "cpu") become_torch_program(device, arguments);
-    return make_paper_cpu_learner(device, options, rng);
-  };
+std::unique_ptr<PaperLearner> CpuOrTorchProgram::make(const std::string& device, const PaperLearnerOptions& options,
+                                                      Rng& rng) const {
+  if (device != "cpu") become_torch_program(device, arguments_);
+  return LearnerSource::make(device, options, rng);
+}
+
+// Asked first, on the main thread.
+std::vector<std::unique_ptr<LearnerSource>> CpuOrTorchProgram::make_together(const std::string& device,
+                                                                             int trainings) const {
+  if (device != "cpu") become_torch_program(device, arguments_);
+  return LearnerSource::make_together(device, trainings);
 }
 
 void catch_training_signals() {
@@ -308,7 +314,7 @@ int training_signal() {
 }
 
 void visit_train_options(const std::function<void(const CLI::App&)>& visit) {
-  visit(TrainProgram(make_paper_cpu_learner).app());
+  visit(TrainProgram(kCpuLearners).app());
 }
 
 }  // namespace graphdrl

@@ -6,19 +6,26 @@
 #include <string>
 #include <vector>
 
-#include "graphdrl/train/paper_learner.h"
+#include "graphdrl/train/learner_source.h"
 
 namespace graphdrl {
 
-// Trains as the arguments after `train` say; gives the exit status. `make_learner`: for the devices that the program
-// knows.
-int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner,
-                      const MakePaperLearnerGroup& make_group = {});
+// Trains as the arguments after `train` say; gives the exit status.
+int run_train_command(const std::vector<std::string>& arguments, const LearnerSource& learners);
 
-// Makes learners on the CPU. Asked for another device, the program becomes graphdrl-train, called with `arguments`,
-// which has LibTorch and stands beside it, installed or not: signals and the exit status are that program's from then
-// on. REQUIRES: nothing is written yet. The learner throws Error where graphdrl-train is not there.
-MakePaperLearner learner_or_torch_program(std::vector<std::string> arguments);
+// Makes learners on the CPU. Asked for another device, the program becomes graphdrl-train, called with the program's
+// `arguments`, which has LibTorch and stands beside it, installed or not: signals and the exit status are that
+// program's from then on. REQUIRES: nothing is written yet. Throws Error where graphdrl-train is not there.
+class CpuOrTorchProgram final : public LearnerSource {
+ public:
+  explicit CpuOrTorchProgram(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {}
+  std::unique_ptr<PaperLearner> make(const std::string& device, const PaperLearnerOptions& options,
+                                     Rng& rng) const override;
+  std::vector<std::unique_ptr<LearnerSource>> make_together(const std::string& device, int trainings) const override;
+
+ private:
+  std::vector<std::string> arguments_;
+};
 
 // Catches SIGINT, SIGTERM and SIGHUP from now on. training_signal() gives the last one caught, 0 if none.
 void catch_training_signals();

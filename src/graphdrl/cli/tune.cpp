@@ -83,11 +83,10 @@ std::string to_text(const Tuning& tuning) {
   return text;
 }
 
-void tune(TuneCommand command, const MakePaperLearner& make_learner, const MakePaperLearnerGroup& make_group) {
+void tune(TuneCommand command, const LearnerSource& learners) {
   command.options.rounds = parse_rounds(command.rounds);
   const std::string folder = command.resume.empty() ? command.out : command.resume;
-  Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder, make_learner, make_group)
-                                         : Tuning::resume(folder, make_learner, make_group);
+  Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder, learners) : Tuning::resume(folder);
   catch_training_signals();
   ProgressDisplay display(stderr, "round", 0);
   const bool finished = tuning.run(
@@ -96,7 +95,8 @@ void tune(TuneCommand command, const MakePaperLearner& make_learner, const MakeP
         const std::string line = fmt::format("{}/{}  {} runs done  {:.0f} steps/s", round + 1,
                                              tuning.options().rounds.size(), news.runs_done, news.samples_per_s);
         display.show_line(line, static_cast<double>(news.units_done) / static_cast<double>(news.units));
-      });
+      },
+      learners);
   display.finish();
   if (!finished) {
     print_diagnostic(fmt::format("Stopped; everything is saved. To go on:\n  graphdrl tune --resume {}\n", folder));
@@ -108,7 +108,7 @@ void tune(TuneCommand command, const MakePaperLearner& make_learner, const MakeP
 
 }  // namespace
 
-void add_tune_command(CLI::App& app, const MakePaperLearner& make_learner, const MakePaperLearnerGroup& make_group) {
+void add_tune_command(CLI::App& app, const LearnerSource& learners) {
   CLI::App* const command = app.add_subcommand(
       "tune",
       "Search for better hyper-parameters of the paper's training, by successive halving over settings and seeds");
@@ -155,7 +155,7 @@ void add_tune_command(CLI::App& app, const MakePaperLearner& make_learner, const
       ->excludes(out);
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
-  command->callback([=] { tune(*options, make_learner, make_group); });
+  command->callback([options, &learners] { tune(*options, learners); });
 }
 
 }  // namespace graphdrl

@@ -49,10 +49,6 @@ void multiply(const GemmTask<double>& task) {
   plain::multiply(task);
 }
 
-void note(Op op_a, int m, int n, int k, int lda, int ldc) {
-  if (gemm_log != nullptr) gemm_log->push_back({op_a == Op::kTranspose, m, n, k, lda, ldc});
-}
-
 }  // namespace
 
 template <typename T>
@@ -117,7 +113,6 @@ void PackedMatrix<T>::set_transposed(const PackedMatrix& other) {
 
 template <typename T>
 void gemm(Op op_a, int m, int n, int k, const T* a, int lda, const PackedMatrix<T>& b, bool accumulate, T* c, int ldc) {
-  note(op_a, m, n, k, lda, ldc);
   for (int column = 0; column < n; column += kPanelColumns) {
     multiply({.transposed = op_a == Op::kTranspose,
               .accumulate = accumulate,
@@ -134,7 +129,6 @@ void gemm(Op op_a, int m, int n, int k, const T* a, int lda, const PackedMatrix<
 
 template <typename T>
 void gemm(int m, const T* a, int lda, const PackedMatrix<T>& b, PackedMatrix<T>& c) {
-  note(Op::kNone, m, b.columns(), b.rows(), lda, b.columns());
   c.reset(m, b.columns());
   for (int index = 0; index < b.panel_count(); ++index) {
     multiply({.transposed = false,

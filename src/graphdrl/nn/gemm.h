@@ -61,15 +61,4 @@ template <typename T>
 void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b, int ldb, bool accumulate, T* c,
           int ldc);
 
-// The shape of a product, as this thread notes it for benchmarks.
-struct GemmShape {
-  bool a_transposed;
-  int m;
-  int n;
-  int k;
-  int lda;
-  int ldc;
-};
-inline thread_local std::vector<GemmShape>* gemm_log = nullptr;  // null to note nothing
-
 }  // namespace graphdrl

@@ -1,4 +1,4 @@
-// The Q-network of the paper, Table 1, without any tensor library: its parameters, its inference, its policy files.
+// The Q-network of the paper, Table 1, without any tensor library: its parameters, its passes, its policy files.
 //
 // Two facts that differ from the paper's text. Table 1 prints 26,598 parameters for its third row; the formula that
 // gives its first and fifth, L·D² + 6·D² + 6·D, gives 41,344 there, and so does this network. The text says the output
@@ -26,6 +26,22 @@ inline constexpr LinearShape kFc2Shape = {kHiddenWidth, kActionCount};
 inline constexpr double kBatchNormEpsilon = 1e-5;
 inline constexpr double kBatchNormMomentum = 0.1;
 
+// Where the tensors of the network stand, or those of their gradients. T is float or const float.
+template <typename T>
+struct PaperTensors {
+  // Of batch normalisation: [D] each.
+  struct Norm {
+    T* weight;
+    T* bias;
+    T* running_mean;
+    T* running_variance;
+  };
+  std::array<GatedGraphConvTensors<T>, 3> convs;
+  std::array<Norm, 2> norms;  // after the first two
+  LinearTensors<T> fc1;
+  LinearTensors<T> fc2;
+};
+
 class PaperParameters : public ParameterBuffer {
  public:
   // Initialised as PyTorch and PyTorch Geometric do; batch norm 1 and 0, its running statistics 0 and 1.
@@ -43,9 +59,9 @@ class PaperParameters : public ParameterBuffer {
   // The network, as policy files describe it. The key "wall" is there only where it is not the border.
   nlohmann::json description() const;
 
-  using ParameterBuffer::conv;
-  GatedGraphConvTensors<float> conv(int layer);  // layer: 1 to 3
-  GatedGraphConvTensors<const float> conv(int layer) const;
+  // They point into values().
+  PaperTensors<float> tensors();
+  PaperTensors<const float> tensors() const;
 
   static PaperParameters from_file(const Safetensors& file, const std::string& prefix = "") {
     return PaperParameters(ParameterBuffer(specs(), file, prefix));
@@ -61,29 +77,48 @@ class PaperParameters : public ParameterBuffer {
 void write_policy_file(const std::filesystem::path& path, const PaperParameters& parameters);
 PaperParameters read_policy_file(const std::filesystem::path& path);
 
-// Computes Q-values as PyTorch does in eval mode: batch norm by its running statistics, no dropout. Keeps its working
-// memory; not thread safe, though it spreads its work over parallel_for.
+// Computes Q-values as PyTorch does, and the gradients of a training. Keeps its working memory; not thread safe, though
+// it spreads its work over parallel_for.
 class PaperNetwork {
  public:
   PaperNetwork();
 
-  // Takes the parameters for all later calls; they must stay until the next call.
+  // Takes the parameters for all later calls; they must stay until the next call, which must follow every change.
   void set_parameters(const PaperParameters& parameters);
 
-  // x: [N, F] features, q: [B, A].
-  void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q);
+  // x: [N, F] features, q: [B, A]. Without `keep_scale` in eval mode: batch norm by its running statistics, no dropout.
+  // With it in train mode [paper, Table 1]: batch norm by the batch's statistics, and hidden values multiplied by
+  // keep_scale [B, 256], 0 where one is dropped and 1 / (1 - p) where it is kept; what backward() needs stays.
+  void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q,
+                std::span<const float> keep_scale = {});
 
-  // Layer 1 to 3, with its weights set; a learner runs it forward and backward by itself.
-  GatedGraphConv<float>& conv(int layer) { return convs_[layer - 1]; }
+  // After q_values() with the same batch and keep_scale. grad_q: [B, A], the loss's derivative by q; `grad` is
+  // overwritten by that by the parameters, but for the running statistics, which have none.
+  void backward(const GraphBatch& batch, std::span<const float> keep_scale, std::span<const float> grad_q,
+                const PaperTensors<float>& grad);
+
+  // Moves running statistics towards those of the last q_values() in train mode, which had `nodes` nodes.
+  void move_statistics(int nodes, const PaperTensors<float>& parameters) const;
 
  private:
-  void normalise(int layer, std::span<float> x) const;
+  struct Layer {
+    explicit Layer(const GatedGraphConvShape& shape) : conv(shape) {}
 
-  const PaperParameters* parameters_ = nullptr;
-  std::vector<GatedGraphConv<float>> convs_;
-  std::array<std::vector<float>, 3> outputs_;  // [N, D] each
-  std::vector<float> pooled_;                  // [B, 128]
-  std::vector<float> hidden_;                  // [B, 256]
+    GatedGraphConv<float> conv;
+    std::vector<float> output;      // [N, D]
+    std::vector<float> grad;        // by it: [N, D]
+    ColumnStatistics running;       // of the batch norm after it, where there is one
+    ColumnStatistics of_batch;      // in train mode
+    std::vector<float> normalised;  // [N, D], in train mode
+  };
+
+  PaperTensors<const float> tensors_{};
+  std::vector<Layer> layers_;
+  std::vector<float> pooled_;       // [B, 128]
+  std::vector<float> activated_;    // [B, 256], before the dropout
+  std::vector<float> hidden_;       // [B, 256], after it
+  std::vector<float> grad_hidden_;  // [B, 256]
+  std::vector<float> grad_pooled_;  // [B, 128]
 };
 
 }  // namespace graphdrl

@@ -1,12 +1,12 @@
 #include "graphdrl/train/checkpoint.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/json.h"
+#include "graphdrl/train/options.h"
 
 namespace graphdrl {
 namespace {
@@ -21,10 +21,18 @@ constexpr const char* kFirstMoment = "adam.exp_avg";
 constexpr const char* kSecondMoment = "adam.exp_avg_sq";
 constexpr const char* kAdamSteps = "adam.step";
 
+std::string layout_of(const std::string& preset) {
+  return std::to_string(preset == kExplorerPreset ? kExplorerLayout : kPaperLayout);
+}
+
+[[noreturn]] void refuse_number(const Checkpoint& checkpoint, const char* key) {
+  checkpoint.fail("not a checkpoint: no number " + in_quotes(key));
+}
+
 }  // namespace
 
 CheckpointWriter::CheckpointWriter(const std::string& preset)
-    : metadata_{{kLayoutKey, std::to_string(kCheckpointLayout)}, {kPresetKey, preset}} {}
+    : metadata_{{kLayoutKey, layout_of(preset)}, {kPresetKey, preset}} {}
 
 void CheckpointWriter::add_json(const std::string& key, const Json& json) {
   metadata_[key] = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -38,33 +46,44 @@ void CheckpointWriter::add(const Rng& rng) {
   add(kRandomState, std::vector<std::uint64_t>(rng.state().begin(), rng.state().end()));
 }
 
-void CheckpointWriter::add_views(const AdamState& adam) {
-  add(TensorView(kFirstMoment, {std::ssize(adam.exp_avg)}, std::span(adam.exp_avg)));
-  add(TensorView(kSecondMoment, {std::ssize(adam.exp_avg_sq)}, std::span(adam.exp_avg_sq)));
+void CheckpointWriter::add(AdamState adam) {
+  add(kFirstMoment, std::move(adam.exp_avg));
+  add(kSecondMoment, std::move(adam.exp_avg_sq));
   add(kAdamSteps, std::vector<std::int64_t>{adam.steps});
 }
 
-Checkpoint Checkpoint::read(const std::filesystem::path& path, const std::string& preset) {
+void CheckpointWriter::add(const std::string& prefix, ParameterBuffer parameters) {
+  const auto kept = std::make_shared<const ParameterBuffer>(std::move(parameters));
+  for (TensorView& view : kept->views(prefix)) add(std::move(view));
+  kept_.push_back(kept);
+}
+
+Checkpoint Checkpoint::read(const std::filesystem::path& path) {
   Checkpoint checkpoint(Safetensors::read(path));
-  const Metadata& metadata = checkpoint.file_.metadata();
-  const auto value = [&](const char* key) {
-    const auto found = metadata.find(key);
-    return found == metadata.end() ? std::string() : found->second;
-  };
-  if (!metadata.contains(kProgressKey)) checkpoint.fail("not a checkpoint");
-  if (const std::string layout = value(kLayoutKey); layout != std::to_string(kCheckpointLayout)) {
+  if (checkpoint.metadata(kProgressKey).empty()) checkpoint.fail("not a checkpoint");
+  const std::string expected = layout_of(checkpoint.metadata(kPresetKey));
+  if (const std::string& layout = checkpoint.metadata(kLayoutKey); layout != expected) {
     throw Error({.what = "a checkpoint of another version of graphdrl, which cannot be gone on with: begin anew",
-                 .expected = fmt::format("layout {}", kCheckpointLayout),
+                 .expected = "layout " + expected,
                  .got = layout.empty() ? "an older one" : in_quotes(layout),
                  .where = path.string()});
   }
-  if (const std::string found = value(kPresetKey); found != preset) {
+  return checkpoint;
+}
+
+void Checkpoint::require_preset(const std::string& preset) const {
+  if (const std::string& found = metadata(kPresetKey); found != preset) {
     throw Error({.what = "a checkpoint of another preset than config.json's",
                  .expected = preset,
                  .got = in_quotes(found),
-                 .where = path.string()});
+                 .where = source()});
   }
-  return checkpoint;
+}
+
+const std::string& Checkpoint::metadata(const char* key) const {
+  static const std::string none;
+  const auto found = file_.metadata().find(key);
+  return found == file_.metadata().end() ? none : found->second;
 }
 
 void Checkpoint::fail(const std::string& what, const std::string& expected) const {
@@ -81,15 +100,29 @@ Json Checkpoint::json(const std::string& key) const {
   const auto text = file_.metadata().find(key);
   if (text == file_.metadata().end()) fail("not a whole checkpoint", in_quotes(key) + " in its metadata");
   require_shallow_json(text->second, source());
-  return nlohmann::ordered_json::parse(text->second, nullptr, /*allow_exceptions=*/false);
+  return Json::parse(text->second, nullptr, /*allow_exceptions=*/false);
+}
+
+void Checkpoint::read_number(const Json& json, const char* key, std::int64_t& value) const {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_number_unsigned() || found->get<std::uint64_t>() > INT64_MAX) {
+    refuse_number(*this, key);
+  }
+  found->get_to(value);
+}
+
+void Checkpoint::read_number(const Json& json, const char* key, double& value) const {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_number()) refuse_number(*this, key);
+  found->get_to(value);
 }
 
 TrainingProgress Checkpoint::progress() const {
   const Json found = json(kProgressKey);
   TrainingProgress progress;
-  read_number(found, "done", *this, progress.done);
-  read_number(found, "samples", *this, progress.samples);
-  read_number(found, "elapsed_s", *this, progress.elapsed_s);
+  read_number(found, "done", progress.done);
+  read_number(found, "samples", progress.samples);
+  read_number(found, "elapsed_s", progress.elapsed_s);
   return progress;
 }
 
@@ -101,8 +134,8 @@ Rng Checkpoint::rng() const {
   return Rng(state);
 }
 
-AdamState Checkpoint::adam(std::size_t count) const {
-  const Shape shape = {static_cast<std::int64_t>(count)};
+AdamState Checkpoint::adam(std::size_t trainable_count) const {
+  const Shape shape = {static_cast<std::int64_t>(trainable_count)};
   AdamState state;
   state.exp_avg = get<float>(kFirstMoment, shape);
   state.exp_avg_sq = get<float>(kSecondMoment, shape);

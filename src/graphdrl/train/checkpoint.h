@@ -1,5 +1,5 @@
 // checkpoint.safetensors: all that a training goes on from. Every preset has the same names for the same things:
-//   online.*, target.*                          the two networks' tensors, under PyTorch's names
+//   online.*, target.*                          the networks' tensors, under PyTorch's names; target only where used
 //   adam.exp_avg, adam.exp_avg_sq, adam.step    Adam's state, under PyTorch's names
 //   random.state [4]                            the random numbers
 //   replay.*                                    what is remembered to learn from
@@ -8,32 +8,25 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "graphdrl/base/random.h"
-#include "graphdrl/io/safetensors.h"
+#include "graphdrl/nn/parameters.h"
 #include "graphdrl/train/adam.h"
 
 namespace graphdrl {
 
-// Grows with every change that makes older checkpoints unreadable. The layouts before 2 had no number.
-inline constexpr int kCheckpointLayout = 2;
+// Grows with every change that makes a preset's older checkpoints unreadable. The layouts before 2 had no number.
+inline constexpr int kPaperLayout = 2;
+inline constexpr int kExplorerLayout = 3;
 
 // Where a training stands.
 struct TrainingProgress {
   std::int64_t done = 0;     // episodes or rounds
   std::int64_t samples = 0;  // steps or states, of all of them
   double elapsed_s = 0;      // of all sessions
-};
-
-// All that a recipe learns.
-template <typename Parameters>
-struct LearnedState {
-  Parameters online;
-  Parameters target;
-  AdamState adam;
 };
 
 class CheckpointWriter {
@@ -60,20 +53,13 @@ class CheckpointWriter {
 
   void add(const TrainingProgress& progress);
   void add(const Rng& rng);
-  template <typename Parameters>
-  void add(LearnedState<Parameters> state) {
-    const auto kept = std::make_shared<const LearnedState<Parameters>>(std::move(state));
-    for (TensorView& view : kept->online.views("online.")) add(std::move(view));
-    for (TensorView& view : kept->target.views("target.")) add(std::move(view));
-    add_views(kept->adam);
-    kept_.push_back(kept);
-  }
+  void add(AdamState adam);
+  // The tensors under their names, each after the prefix: "online." or "target.".
+  void add(const std::string& prefix, ParameterBuffer parameters);
 
   void write(const std::filesystem::path& path) const { write_safetensors(path, tensors_, metadata_); }
 
  private:
-  void add_views(const AdamState& adam);
-
   std::vector<TensorView> tensors_;
   std::vector<std::shared_ptr<const void>> kept_;
   Metadata metadata_;
@@ -82,8 +68,10 @@ class CheckpointWriter {
 // A checkpoint, read. All that read from it throw Error, naming the file, where something is missing or cannot be.
 class Checkpoint {
  public:
-  // Throws Error also where the layout or the preset is another.
-  static Checkpoint read(const std::filesystem::path& path, const std::string& preset);
+  // Throws Error also where the layout is another.
+  static Checkpoint read(const std::filesystem::path& path);
+  // Throws Error where the checkpoint is of another preset than the run's configuration.
+  void require_preset(const std::string& preset) const;
 
   const std::string& source() const { return file_.source(); }
   template <typename T>
@@ -102,31 +90,23 @@ class Checkpoint {
   TrainingProgress progress() const;
   Rng rng() const;
   template <typename Parameters>
-  LearnedState<Parameters> learned(std::size_t trainable_count) const {
-    return {.online = Parameters::from_file(file_, "online."),
-            .target = Parameters::from_file(file_, "target."),
-            .adam = adam(trainable_count)};
+  Parameters parameters(const std::string& prefix) const {
+    return Parameters::from_file(file_, prefix);
   }
+  AdamState adam(std::size_t trainable_count) const;
+
+  // The number under a key of metadata that is read. Throws Error where there is none, or, of an integer, one below 0.
+  void read_number(const nlohmann::ordered_json& json, const char* key, std::int64_t& value) const;
+  void read_number(const nlohmann::ordered_json& json, const char* key, double& value) const;
 
   [[noreturn]] void fail(const std::string& what, const std::string& expected = "") const;
 
  private:
   explicit Checkpoint(Safetensors file) : file_(std::move(file)) {}
 
-  AdamState adam(std::size_t count) const;
+  const std::string& metadata(const char* key) const;  // empty where there is none
 
   Safetensors file_;
 };
-
-// The number under a key. Throws Error where there is none, or one below 0 that counts things.
-template <typename T>
-void read_number(const nlohmann::ordered_json& json, const char* key, const Checkpoint& checkpoint, T& value) {
-  const bool good =
-      json.is_object() && json.contains(key) &&
-      (std::is_integral_v<T> ? json[key].is_number_unsigned() && json[key].template get<std::uint64_t>() <= INT64_MAX
-                             : json[key].is_number());
-  if (!good) checkpoint.fail("not a checkpoint: no number '" + std::string(key) + "'");
-  json[key].get_to(value);
-}
 
 }  // namespace graphdrl

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace graphdrl {
 namespace {
@@ -91,42 +92,28 @@ double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, s
   return loss;
 }
 
-ExplorerLearner::ExplorerLearner(const ExplorerLearnerOptions& options, Rng& rng)
-    : options_(options), online_(rng), target_(online_), adam_(online_.values().size(), {}) {
-  update();
+ExplorerLearner::ExplorerLearner(double ranking, Rng& rng)
+    : ranking_(ranking), parameters_(rng), adam_(parameters_.values().size(), {}) {
+  network_.set_parameters(parameters_);
 }
 
-void ExplorerLearner::update() {
-  network_.set_parameters(online_);
-  if (options_.bootstrap) target_network_.set_parameters(target_);
-}
-
-LearnedState<ExplorerParameters> ExplorerLearner::state() const {
-  return {.online = online_, .target = target_, .adam = adam_.state()};
-}
-
-void ExplorerLearner::set_state(const LearnedState<ExplorerParameters>& state) {
-  online_ = state.online;
-  target_ = state.target;
-  adam_.set_state(state.adam);
-  update();
+void ExplorerLearner::set_state(const ExplorerParameters& parameters, AdamState adam) {
+  parameters_ = parameters;
+  adam_.set_state(std::move(adam));
+  network_.set_parameters(parameters_);
 }
 
 double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rate) {
-  if (options_.bootstrap) {
-    bootstrap_labels(lessons);
-  } else {
-    batch_.clear();
-    label_.clear();
-    for (const Lesson* const lesson : lessons) {
-      lesson->append_to(batch_, encoder_);
-      label_.insert(label_.end(), lesson->shortfall.begin(), lesson->shortfall.end());
-    }
+  batch_.clear();
+  label_.clear();
+  for (const Lesson* const lesson : lessons) {
+    lesson->append_to(batch_, encoder_);
+    label_.insert(label_.end(), lesson->shortfall.begin(), lesson->shortfall.end());
   }
   shortfall_.resize(label_.size());
   grad_shortfall_.resize(label_.size());
   network_.forward(batch_, shortfall_, /*keep=*/true);
-  const double loss = explorer_loss(batch_, label_, shortfall_, options_.ranking, grad_shortfall_);
+  const double loss = explorer_loss(batch_, label_, shortfall_, ranking_, grad_shortfall_);
   regret_ = 0;
   for_each_state(batch_, label_, shortfall_, [&](const Labelled& state) {
     const std::size_t choice =
@@ -136,44 +123,9 @@ double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rat
   });
   network_.backward(batch_, grad_shortfall_, grad_);
   adam_.set_learning_rate(rate);
-  adam_.step(grad_.values(), online_.values());
-  if (options_.bootstrap) soft_update(online_.values(), options_.soft_update, target_.values());
-  update();
+  adam_.step(grad_.values(), parameters_.values());
+  network_.set_parameters(parameters_);
   return loss;
-}
-
-void ExplorerLearner::bootstrap_labels(std::span<const Lesson* const> lessons) {
-  batch_.clear();
-  next_.clear();
-  std::vector<double> cost;  // of the first visit made, in mean edges
-  for (const Lesson* const lesson : lessons) {
-    const FirstVisit choice = lesson->append_to(batch_, encoder_)[lesson->choice];
-    cost.push_back(choice.cost / lesson->at->world.open().mean_cost());
-    Lesson after = *lesson;
-    visit(after, choice);
-    after.append_to(next_, encoder_);
-  }
-  const auto next_count = static_cast<std::size_t>(next_.visit_count());
-  std::vector<float> online(next_count);
-  std::vector<float> target(next_count);
-  network_.forward(next_, online);
-  target_network_.forward(next_, target);
-  label_.assign(static_cast<std::size_t>(batch_.visit_count()), kUnlabelled);
-  std::size_t first = 0;  // of a lesson's visits in batch_
-  std::size_t next = 0;   // and in next_
-  for (std::size_t i = 0; i < lessons.size(); ++i) {
-    const int index = static_cast<int>(i);
-    double gain = 1 - kWorthOfCost * (cost[i] - 1);
-    if (next < next_count && next_.state[next] == index) {
-      std::size_t best = next;
-      for (; next < next_count && next_.state[next] == index; ++next) {
-        if (online[next] < online[best]) best = next;
-      }
-      gain += next_.ceiling[i] - target[best];
-    }
-    label_[first + static_cast<std::size_t>(lessons[i]->choice)] = static_cast<float>(batch_.ceiling[i] - gain);
-    while (first < label_.size() && batch_.state[first] == index) ++first;
-  }
 }
 
 }  // namespace graphdrl

@@ -6,7 +6,6 @@
 
 #include "graphdrl/nn/explorer_network.h"
 #include "graphdrl/train/adam.h"
-#include "graphdrl/train/checkpoint.h"
 #include "graphdrl/train/lessons.h"
 
 namespace graphdrl {
@@ -23,15 +22,10 @@ inline constexpr double kRankingTemperature = 0.5;  // nodes
 double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, std::span<const float> shortfall,
                      double ranking, std::span<float> grad);
 
-struct ExplorerLearnerOptions {
-  bool bootstrap;  // Double DQN: values from the network's own, instead of the lessons'
-  double ranking;
-  double soft_update = 5e-3;  // of the target network, with bootstrap
-};
-
 class ExplorerLearner {
  public:
-  ExplorerLearner(const ExplorerLearnerOptions& options, Rng& rng);
+  // ranking: as of explorer_loss(). Initialises the network from rng.
+  ExplorerLearner(double ranking, Rng& rng);
   ExplorerLearner(const ExplorerLearner&) = delete;
 
   // One step of Adam at this learning rate, gradients cut to ±1 one by one; gives the loss before it.
@@ -41,28 +35,18 @@ class ExplorerLearner {
   // a mean over states.
   double regret() const { return regret_; }
 
-  const ExplorerParameters& online() const { return online_; }
-
-  LearnedState<ExplorerParameters> state() const;
-  void set_state(const LearnedState<ExplorerParameters>& state);
+  const ExplorerParameters& parameters() const { return parameters_; }
+  const AdamState& adam() const { return adam_.state(); }
+  void set_state(const ExplorerParameters& parameters, AdamState adam);
 
  private:
-  void update();  // after every change of the parameters
-
-  // Double DQN [van Hasselt et al. 2016] over first visits, undiscounted: what a first visit is worth by the target
-  // network's value of the one that the online network would make next. Every other one stays unlabelled.
-  void bootstrap_labels(std::span<const Lesson* const> lessons);
-
-  ExplorerLearnerOptions options_;
-  ExplorerParameters online_;
-  ExplorerParameters target_;
+  double ranking_;
+  ExplorerParameters parameters_;
   ExplorerParameters grad_;
   Adam adam_;
   ExplorerNetwork network_;
-  ExplorerNetwork target_network_;
   ExplorerEncoder encoder_;
   ExplorerBatch batch_;
-  ExplorerBatch next_;
   std::vector<float> label_;      // [C]
   std::vector<float> shortfall_;  // [C]
   std::vector<float> grad_shortfall_;

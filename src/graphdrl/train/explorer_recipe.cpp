@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "graphdrl/base/parallel.h"
@@ -27,7 +28,7 @@ std::uint64_t walk_seed(const TrainOptions& options, std::int64_t walk) {
 LessonOptions lesson_options(const TrainOptions& options) {
   LessonOptions lessons;
   lessons.worlds = training_worlds(static_cast<int>(options.largest));
-  lessons.teacher_steps = options.teacher == "search" ? static_cast<int>(options.teacher_steps) : 0;
+  lessons.teacher_steps = static_cast<int>(options.teacher_steps);
   lessons.lead = options.lead;
   return lessons;
 }
@@ -38,29 +39,29 @@ ExplorerRecipe::ExplorerRecipe(const TrainOptions& options, Rng& rng)
     : options_(options),
       rng_(rng),
       lesson_options_(lesson_options(options)),
-      learner_({.bootstrap = options.teacher == "double_dqn", .ranking = options.ranking}, rng_),
+      learner_(options.ranking, rng_),
       replay_(static_cast<std::size_t>(options.replay_capacity)) {}
 
 bool ExplorerRecipe::run_unit(TrainingProgress& progress, const std::function<bool()>& /*stop*/) {
-  draw_lessons_of_round(progress);
-  learn_round(progress.done);
+  std::vector<Lesson> lessons = draw(progress.done);
+  progress.samples += std::ssize(lessons);
+  learn(progress.done, std::move(lessons));
   return true;
 }
 
-void ExplorerRecipe::draw_lessons_of_round(TrainingProgress& progress) {
+std::vector<Lesson> ExplorerRecipe::draw(std::int64_t round) const {
   const int walks = static_cast<int>(options_.walks);
-  std::vector<std::vector<Lesson>> drawn(static_cast<std::size_t>(walks));
+  std::vector<std::vector<Lesson>> by_walk(static_cast<std::size_t>(walks));
   parallel_for(walks, [&](int walk) {
-    drawn[walk] =
-        draw_lessons(lesson_options_, learner_.online(), walk_seed(options_, progress.done * options_.walks + walk));
+    by_walk[walk] = draw_lessons(lesson_options_, learner_.parameters(), walk_seed(options_, round * walks + walk));
   });
-  for (std::vector<Lesson>& lessons : drawn) {
-    progress.samples += std::ssize(lessons);
-    for (Lesson& lesson : lessons) replay_.push(std::move(lesson));
-  }
+  std::vector<Lesson> lessons;
+  for (std::vector<Lesson>& of_walk : by_walk) std::move(of_walk.begin(), of_walk.end(), std::back_inserter(lessons));
+  return lessons;
 }
 
-void ExplorerRecipe::learn_round(std::int64_t round) {
+void ExplorerRecipe::learn(std::int64_t round, std::vector<Lesson> lessons) {
+  for (Lesson& lesson : lessons) replay_.push(std::move(lesson));
   loss_ = regret_ = 0;
   std::vector<const Lesson*> picked(static_cast<std::size_t>(options_.batch_size));
   const auto updates = static_cast<double>(options_.updates);
@@ -88,12 +89,14 @@ std::vector<Metric> ExplorerRecipe::take_metrics(const TrainingProgress& progres
 }
 
 void ExplorerRecipe::save(CheckpointWriter& checkpoint) const {
-  checkpoint.add(learner_.state());
+  checkpoint.add("online.", learner_.parameters());
+  checkpoint.add(learner_.adam());
   replay_.save(checkpoint);
 }
 
 void ExplorerRecipe::restore(const Checkpoint& checkpoint, const TrainingProgress& progress) {
-  learner_.set_state(checkpoint.learned<ExplorerParameters>(trainable_count(ExplorerParameters::specs())));
+  learner_.set_state(checkpoint.parameters<ExplorerParameters>("online."),
+                     checkpoint.adam(trainable_count(ExplorerParameters::specs())));
   replay_.restore(checkpoint, lesson_options_);
   if (static_cast<std::int64_t>(replay_.size()) != std::min(progress.samples, options_.replay_capacity)) {
     checkpoint.fail("the checkpoint remembers another number of lessons than it has drawn");
@@ -101,7 +104,7 @@ void ExplorerRecipe::restore(const Checkpoint& checkpoint, const TrainingProgres
 }
 
 void ExplorerRecipe::write_policy(const std::filesystem::path& path) const {
-  write_policy_file(path, learner_.online());
+  write_policy_file(path, learner_.parameters());
 }
 
 }  // namespace graphdrl

@@ -14,8 +14,7 @@ class ExplorerRecipe final : public Recipe {
   // `rng` must outlive it.
   ExplorerRecipe(const TrainOptions& options, Rng& rng);
 
-  Units units() const override { return {.name = "round", .count = options_.rounds, .samples = "states"}; }
-  // One round, whole.
+  // One round, whole: draw() and learn().
   bool run_unit(TrainingProgress& progress, const std::function<bool()>& stop) override;
   std::string status(const TrainingProgress& progress) const override;
   std::vector<Metric> take_metrics(const TrainingProgress& progress) override;
@@ -23,10 +22,12 @@ class ExplorerRecipe final : public Recipe {
   void restore(const Checkpoint& checkpoint, const TrainingProgress& progress) override;
   void write_policy(const std::filesystem::path& path) const override;
 
- private:
-  void draw_lessons_of_round(TrainingProgress& progress);
-  void learn_round(std::int64_t round);
+  // The lessons of a round's walks, which the network leads as it is now. The same for any number of threads.
+  std::vector<Lesson> draw(std::int64_t round) const;
+  // Remembers a round's lessons, and takes its learning steps.
+  void learn(std::int64_t round, std::vector<Lesson> lessons);
 
+ private:
   TrainOptions options_;
   Rng& rng_;
   LessonOptions lesson_options_;

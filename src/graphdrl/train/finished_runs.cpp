@@ -1,12 +1,12 @@
 #include "graphdrl/train/finished_runs.h"
 
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
-#include "graphdrl/train/checkpoint.h"
 #include "graphdrl/train/paper_recipe.h"
 #include "graphdrl/train/seed_runs.h"
 
@@ -14,10 +14,6 @@ namespace graphdrl {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* counter_of(const TrainOptions& options) {
-  return options.preset == kPaperPreset ? "episode" : "round";
-}
 
 FinishedRun read_finished_run(const RunDirectory& directory) {
   FinishedRun run{.directory = directory, .options = read_config(directory.config()), .metrics = {}, .maps = {}};
@@ -30,16 +26,16 @@ FinishedRun read_finished_run(const RunDirectory& directory) {
     if (run.metrics.back().is_object()) continue;
     throw Error({.what = "a line that is no JSON object", .got = in_quotes(line, 80), .where = source});
   }
-  const char* const counter = counter_of(run.options);
-  const std::int64_t all = run.options.preset == kPaperPreset ? run.options.episodes : run.options.rounds;
-  const Checkpoint checkpoint = Checkpoint::read(directory.checkpoint(), run.options.preset);
+  const Checkpoint checkpoint = Checkpoint::read(directory.checkpoint());
+  checkpoint.require_preset(run.options.preset);
   const std::int64_t done = checkpoint.progress().done;
   if (run.options.preset == kPaperPreset) {
     for (const World& world : worlds_of(checkpoint)) run.maps.push_back(world.name());
   }
-  if (done != all) {
+  const TrainingUnits units = units_of(run.options);
+  if (done != units.count) {
     throw Error({.what = "the run is not finished",
-                 .expected = std::to_string(all) + " " + counter + "s",
+                 .expected = std::to_string(units.count) + " " + units.name + "s",
                  .got = std::to_string(done),
                  .where = directory.path().string()});
   }
@@ -78,7 +74,7 @@ std::vector<FinishedRun> read_finished_runs(const std::vector<std::string>& path
 
 std::vector<Point> curve_of(const FinishedRun& run, const std::string& metric) {
   std::vector<Point> curve;
-  const char* const counter = counter_of(run.options);
+  const std::string counter = units_of(run.options).name;
   for (const Json& line : run.metrics) {
     if (!line.contains(counter) || !line[counter].is_number() || !line.contains(metric)) continue;
     if (line[metric].is_number()) curve.push_back({line[counter].get<double>(), line[metric].get<double>()});

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <optional>
 
 #include "graphdrl/planners/explorer.h"
 #include "graphdrl/train/teacher.h"
@@ -17,12 +15,6 @@ namespace {
 constexpr std::size_t kFirstLabelled = 4;
 constexpr std::size_t kMostLabelled = 6;
 
-// Columns of ExplorerBatch::visit_x, and what undoes their scale [explorer_features.h].
-constexpr int kVisitCost = 0;
-constexpr int kChangeOfPenalties = 1;
-constexpr float kCostScale = 8;
-constexpr float kPenaltyScale = 4;
-
 // The start of a random walk with `ratio` mean edges to spend for each valid node.
 Lesson begin_walk(const std::shared_ptr<LessonWorld>& at, NodeId start, double ratio) {
   const World& world = at->world;
@@ -31,7 +23,6 @@ Lesson begin_walk(const std::shared_ptr<LessonWorld>& at, NodeId start, double r
               .position = start,
               .spendable = world.spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
               .scope = kExplorerScope,
-              .choice = 0,
               .shortfall = {}};
   visit(walk, {start, 0});
   return walk;
@@ -62,19 +53,6 @@ std::vector<float> labels(const Task& task, std::span<const FirstVisit> visits, 
     shortfall[first] = static_cast<float>(ceiling - teacher.value(task, visits[first]));
   }
   return shortfall;
-}
-
-// The first visit of least cost and change of penalties, as a beam ranks them.
-std::size_t best_by_rank(const ExplorerBatch& batch, std::size_t count) {
-  const auto rank = [&](std::size_t first) {
-    const float* const row = batch.visit_x.data() + first * kExplorerVisitFeatureCount;
-    return kCostScale * row[kVisitCost] + kPenaltyScale * row[kChangeOfPenalties];
-  };
-  std::size_t best = 0;
-  for (std::size_t first = 1; first < count; ++first) {
-    if (rank(first) < rank(best)) best = first;
-  }
-  return best;
 }
 
 std::size_t least_of(std::span<const float> shortfall) {
@@ -116,8 +94,8 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
   }
   const bool by_network = chance(options.lead);
   const double share = static_cast<double>(options.states_per_walk) / (std::min(ratio, 1.0) * world.valid_count());
-  std::optional<Teacher> teacher;
-  if (options.teacher_steps > 0) teacher.emplace(options.teacher_steps, rng.next()).begin(rest_of(walk));
+  Teacher teacher(options.teacher_steps, rng.next());
+  teacher.begin(rest_of(walk));
 
   std::vector<Lesson> lessons;
   ExplorerBatch batch;
@@ -126,9 +104,10 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
     batch.clear();
     const auto visits = walk.append_to(batch, scorer.encoder());
     if (visits.empty()) return lessons;
-    Lesson lesson = walk;
-    const bool kept = chance(share) && (visits.size() > 1 || !teacher);
-    if (kept && teacher) lesson.shortfall = labels(rest_of(walk), visits, batch.ceiling[0], *teacher, rng);
+    if (chance(share) && visits.size() > 1) {
+      lessons.push_back(walk);
+      lessons.back().shortfall = labels(rest_of(walk), visits, batch.ceiling[0], teacher, rng);
+    }
     std::size_t choice = 0;
     if (chance(options.explore)) {
       choice = rng.below(static_cast<std::uint32_t>(visits.size()));
@@ -136,11 +115,9 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
       scorer.shortfalls(batch, shortfall);
       choice = least_of(shortfall);
     } else {
-      choice = teacher ? best_known(rest_of(walk), visits, *teacher) : best_by_rank(batch, visits.size());
+      choice = best_known(rest_of(walk), visits, teacher);
     }
-    lesson.choice = static_cast<int>(choice);
-    if (kept) lessons.push_back(std::move(lesson));
-    if (teacher) teacher->visited(visits[choice].node);
+    teacher.visited(visits[choice].node);
     visit(walk, visits[choice]);
   }
 }

@@ -1,6 +1,5 @@
 // What the explorer learns from: states met on the way through random worlds, with what first visits are worth by
-// search. Values taught by search go on rising where values bootstrapped from the network's own stall
-// (docs/explorer.md).
+// search.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +16,7 @@ namespace graphdrl {
 // The defaults are what the explorer in the program was trained with; only `lead` was varied (docs/explorer.md).
 struct LessonOptions {
   std::vector<WorldSpec> worlds;  // drawn from with equal chances
-  int teacher_steps = 0;          // of the search for one label [teacher.h]; 0 to label none
+  int teacher_steps = 2;          // of the search for one label [teacher.h]
   double lead = 0;                // chance of a walk to be led by the network's least shortfall, else by search
   double least_budget = 0.5;      // times valid nodes and mean cost
   double most_budget = 1.5;
@@ -49,8 +48,7 @@ struct Lesson {
   NodeId position;
   double spendable;
   int scope;                     // nodes the network looks at
-  int choice = 0;                // the first visit made, by its place among all, nearest first
-  std::vector<float> shortfall;  // by first visit; kUnlabelled for some where there are many, empty without a teacher
+  std::vector<float> shortfall;  // by first visit; kUnlabelled for some where there are many
 
   // Appends the state; gives its first visits, until the encoder's next call.
   std::span<const FirstVisit> append_to(ExplorerBatch& batch, ExplorerEncoder& encoder) const {

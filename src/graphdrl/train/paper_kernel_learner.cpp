@@ -3,30 +3,41 @@
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/train/learner_source.h"
 #include "graphdrl/train/paper_td_target.h"
 
 namespace graphdrl {
 
 PaperKernelLearner::PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng)
     : options_(options),
-      online_(PaperParameters(rng)),
-      target_(online_.parameters()),
-      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {}
+      online_(rng),
+      target_(online_),
+      online_tensors_(online_.tensors()),
+      grad_tensors_(grad_.tensors()),
+      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {
+  update();
+}
+
+void PaperKernelLearner::update() {
+  network_.set_parameters(online_);
+  target_network_.set_parameters(target_);
+}
 
 double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::span<const float> keep_scale) {
   const int graphs = batch.graphs.graph_count();
   next_q_.resize(static_cast<std::size_t>(graphs) * kActionCount);
-  target_.q_values(batch.graphs, batch.next_x, next_q_);
+  target_network_.q_values(batch.graphs, batch.next_x, next_q_);
   TdBatch td{.rewards = batch.rewards, .terminal = batch.terminal, .next_q = next_q_, .chooser = next_q_};
   if (options_.double_dqn) {
     next_online_.resize(next_q_.size());
-    online_.q_values(batch.graphs, batch.next_x, next_online_);
+    network_.q_values(batch.graphs, batch.next_x, next_online_);
     td.chooser = next_online_;
   }
   const std::vector<float> targets = td_targets(td, options_.discount);
 
   q_.resize(next_q_.size());
-  online_.forward_train(batch.graphs, batch.x, keep_scale, q_);
+  network_.q_values(batch.graphs, batch.x, q_, keep_scale);
+  network_.move_statistics(batch.graphs.node_count(), online_tensors_);
   double loss = 0;  // L(θ) [paper, eq. 5], a mean of squares
   for (int g = 0; g < graphs; ++g) {
     float* const row = q_.data() + static_cast<std::ptrdiff_t>(g) * kActionCount;
@@ -36,7 +47,7 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
     std::fill_n(row, kActionCount, 0.0f);
     row[action] = 2 * error / static_cast<float>(graphs);
   }
-  online_.backward(batch.graphs, keep_scale, q_);
+  network_.backward(batch.graphs, keep_scale, q_, grad_tensors_);
   return loss;
 }
 
@@ -44,29 +55,27 @@ void PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
   losses_.push_back(
       compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng)));
   const std::size_t trainable = PaperParameters::trainable_count();
-  const std::span<float> values = online_.parameters().values();
-  adam_.step(online_.gradients().values().first(trainable), values.first(trainable));
-  soft_update(values, options_.soft_update, target_.parameters().values());
-  online_.update();
-  target_.update();
-}
-
-PaperState PaperKernelLearner::state() const {
-  return {.online = online_.parameters(), .target = target_.parameters(), .adam = adam_.state()};
+  adam_.step(grad_.values().first(trainable), online_.values().first(trainable));
+  soft_update(online_.values(), options_.soft_update, target_.values());
+  update();
 }
 
 void PaperKernelLearner::set_state(const PaperState& state) {
-  online_.parameters() = state.online;
-  target_.parameters() = state.target;
+  std::ranges::copy(state.online.values(), online_.values().begin());
+  std::ranges::copy(state.target.values(), target_.values().begin());
   adam_.set_state(state.adam);
-  online_.update();
-  target_.update();
+  update();
 }
 
-std::unique_ptr<PaperLearner> make_paper_cpu_learner(const std::string& device, const PaperLearnerOptions& options,
-                                                     Rng& rng) {
+std::unique_ptr<PaperLearner> LearnerSource::make(const std::string& device, const PaperLearnerOptions& options,
+                                                  Rng& rng) const {
   if (device == "cpu") return std::make_unique<PaperKernelLearner>(options, rng);
   throw Error({.what = "this program trains on the CPU alone", .expected = "cpu", .got = device, .where = "--device"});
+}
+
+std::vector<std::unique_ptr<LearnerSource>> LearnerSource::make_together(const std::string& /*device*/,
+                                                                         int /*trainings*/) const {
+  return {};
 }
 
 }  // namespace graphdrl

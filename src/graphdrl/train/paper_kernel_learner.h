@@ -6,7 +6,6 @@
 
 #include "graphdrl/train/adam.h"
 #include "graphdrl/train/paper_learner.h"
-#include "graphdrl/train/paper_q_network.h"
 
 namespace graphdrl {
 
@@ -15,26 +14,35 @@ class PaperKernelLearner final : public PaperLearner {
  public:
   // Initialises the online network from rng and copies it to the target.
   PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng);
+  PaperKernelLearner(const PaperKernelLearner&) = delete;  // the networks point into the parameters
 
   void learn(const PaperMinibatch& batch, Rng& rng) override;
   std::vector<double> take_losses() override { return std::exchange(losses_, {}); }
   void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) override {
-    online_.q_values(batch, x, q);
+    network_.q_values(batch, x, q);
   }
-  PaperState state() const override;
+  PaperState state() const override { return {.online = online_, .target = target_, .adam = adam_.state()}; }
   void set_state(const PaperState& state) override;
 
-  // The loss [paper, eq. 5]; its gradients stay in online().gradients(), not clamped yet.
-  // keep_scale: [B, 256], see PaperQNetwork::forward_train.
+  // The loss [paper, eq. 5]; its gradients stay in gradients(), not clamped yet. Moves the running statistics.
+  // keep_scale: [B, 256], see PaperNetwork::q_values.
   double compute_gradients(const PaperMinibatch& batch, std::span<const float> keep_scale);
 
-  PaperQNetwork& online() { return online_; }
-  PaperQNetwork& target() { return target_; }
+  const PaperParameters& online() const { return online_; }
+  const PaperParameters& target() const { return target_; }
+  const PaperParameters& gradients() const { return grad_; }  // running statistics have none: 0
 
  private:
+  void update();  // after every change of the parameters
+
   PaperLearnerOptions options_;
-  PaperQNetwork online_;
-  PaperQNetwork target_;
+  PaperParameters online_;
+  PaperParameters target_;
+  PaperParameters grad_;
+  PaperTensors<float> online_tensors_;
+  PaperTensors<float> grad_tensors_;
+  PaperNetwork network_;
+  PaperNetwork target_network_;
   Adam adam_;
   std::vector<double> losses_;      // not taken yet
   std::vector<float> next_q_;       // [B, A]

@@ -3,15 +3,12 @@
 // LibTorch's operators on any device that it has, for many trainings at once.
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/nn/paper_network.h"
-#include "graphdrl/train/checkpoint.h"
+#include "graphdrl/train/adam.h"
 #include "graphdrl/train/paper_minibatch.h"
 
 namespace graphdrl {
@@ -26,7 +23,11 @@ struct PaperLearnerOptions {
 };
 
 // The same whatever device the learner runs on.
-using PaperState = LearnedState<PaperParameters>;
+struct PaperState {
+  PaperParameters online;
+  PaperParameters target;
+  AdamState adam;
+};
 
 class PaperLearner {
  public:
@@ -44,29 +45,5 @@ class PaperLearner {
   virtual PaperState state() const = 0;
   virtual void set_state(const PaperState& state) = 0;
 };
-
-// Makes a learner on a device by its name, "cpu" or "cuda". It initialises the online network from rng and copies it to
-// the target. Throws Error where there is no such device.
-using MakePaperLearner =
-    std::function<std::unique_ptr<PaperLearner>(const std::string& device, const PaperLearnerOptions&, Rng& rng)>;
-
-// Learners of trainings side by side whose work a device does together. Each training runs on a thread of its own.
-class PaperLearnerGroup {
- public:
-  virtual ~PaperLearnerGroup() = default;
-
-  // Makes the learner of a training, from 0 up. The group must outlive it.
-  virtual MakePaperLearner learner_of(int training) = 0;
-
-  // That training asks for nothing more. REQUIRES: called once for each training, or the others wait for it.
-  virtual void leave(int training) = 0;
-};
-
-using MakePaperLearnerGroup =
-    std::function<std::unique_ptr<PaperLearnerGroup>(const std::string& device, int trainings)>;
-
-// The one that knows the CPU alone.
-std::unique_ptr<PaperLearner> make_paper_cpu_learner(const std::string& device, const PaperLearnerOptions& options,
-                                                     Rng& rng);
 
 }  // namespace graphdrl

@@ -40,4 +40,10 @@ void sample_minibatch(const PaperReplayBuffer& replay, std::span<const PaperFeat
   }
 }
 
+std::vector<float> draw_keep_scale(int rows, int width, double p, Rng& rng) {
+  std::vector<float> scale(static_cast<std::size_t>(rows) * width);
+  for (float& value : scale) value = rng.uniform() < p ? 0.0f : static_cast<float>(1 / (1 - p));
+  return scale;
+}
+
 }  // namespace graphdrl

@@ -1,4 +1,4 @@
-// Samples of the replay buffer, as the learner takes them.
+// Samples of the replay buffer, as the learner takes them, and the dropout of a learning step.
 #pragma once
 
 #include <cstdint>
@@ -35,5 +35,8 @@ void append_transition(const PaperReplayBuffer& replay, std::size_t index, const
 // that the transitions name. The batch's memory is used again.
 void sample_minibatch(const PaperReplayBuffer& replay, std::span<const PaperFeatureEncoder> encoders, std::int64_t size,
                       Rng& rng, PaperMinibatch& batch);
+
+// 0 with probability p, else 1 / (1 - p); [rows, width].
+std::vector<float> draw_keep_scale(int rows, int width, double p, Rng& rng);
 
 }  // namespace graphdrl

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/budget.h"
@@ -59,12 +60,12 @@ std::size_t largest(const std::vector<World>& worlds) {
 }  // namespace
 
 PaperRecipe::PaperRecipe(const TrainOptions& options, Rng& rng, std::vector<World> worlds,
-                         const MakePaperLearner& make_learner)
+                         const LearnerSource& learners)
     : options_(options),
       rng_(rng),
       worlds_(checked(std::move(worlds), options)),
       encoders_(worlds_.begin(), worlds_.end()),
-      learner_(make_learner(options.device, learner_options(options), rng_)),
+      learner_(learners.make(options.device, learner_options(options), rng_)),
       replay_(static_cast<std::size_t>(options.replay_capacity), largest(worlds_)) {
   for (const World& world : worlds_) episodes_.emplace_back(world, episode_options(options_, world));
 }
@@ -199,7 +200,10 @@ void PaperRecipe::for_each_window_field(AnyWindow& window, const Field& field) {
 }
 
 void PaperRecipe::save(CheckpointWriter& checkpoint) const {
-  checkpoint.add(learner_->state());
+  PaperState learned = learner_->state();
+  checkpoint.add("online.", std::move(learned.online));
+  checkpoint.add("target.", std::move(learned.target));
+  checkpoint.add(std::move(learned.adam));
   replay_.save(checkpoint);
   // An episode under way is stored as its start and its actions, and walked again when restored.
   std::vector<std::int32_t> episode;
@@ -234,9 +238,11 @@ std::vector<World> worlds_of(const Checkpoint& checkpoint) {
 
 void PaperRecipe::restore(const Checkpoint& checkpoint, const TrainingProgress& progress) {
   const auto window = checkpoint.json(kWindowKey);
-  for_each_window_field(window_, [&](const char* key, auto& value) { read_number(window, key, checkpoint, value); });
+  for_each_window_field(window_, [&](const char* key, auto& value) { checkpoint.read_number(window, key, value); });
   if (window_.episodes > progress.done) checkpoint.fail("the metrics under way are of more episodes than are done");
-  learner_->set_state(checkpoint.learned<PaperParameters>(PaperParameters::trainable_count()));
+  learner_->set_state({.online = checkpoint.parameters<PaperParameters>("online."),
+                       .target = checkpoint.parameters<PaperParameters>("target."),
+                       .adam = checkpoint.adam(PaperParameters::trainable_count())});
   replay_.restore(checkpoint, [&](const Transition& t) {
     if (t.world < 0 || t.world >= std::ssize(worlds_)) return false;
     const auto inside = [&](NodeId node) { return node >= 0 && node < worlds_[t.world].graph().node_count(); };

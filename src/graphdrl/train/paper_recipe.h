@@ -20,9 +20,8 @@ inline constexpr std::int64_t kLogEvery = 10;  // episodes: the paper's figure 2
 class PaperRecipe final : public Recipe {
  public:
   // Throws Error on maps that do not fit the options. `rng` must outlive it.
-  PaperRecipe(const TrainOptions& options, Rng& rng, std::vector<World> worlds, const MakePaperLearner& make_learner);
+  PaperRecipe(const TrainOptions& options, Rng& rng, std::vector<World> worlds, const LearnerSource& learners);
 
-  Units units() const override { return {.name = "episode", .count = options_.episodes, .samples = "steps"}; }
   // One episode, or the rest of one. Asks `stop` before every step.
   bool run_unit(TrainingProgress& progress, const std::function<bool()>& stop) override;
   std::string status(const TrainingProgress& progress) const override;

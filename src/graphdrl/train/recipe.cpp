@@ -6,15 +6,17 @@
 
 namespace graphdrl {
 
+TrainingUnits units_of(const TrainOptions& options) {
+  if (options.preset == kExplorerPreset) return {.name = "round", .count = options.rounds, .samples = "states"};
+  return {.name = "episode", .count = options.episodes, .samples = "steps"};
+}
+
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
-                                    const MakePaperLearner& make_learner, std::vector<World> worlds) {
+                                    const LearnerSource& learners, std::vector<World> worlds) {
   if (options.preset == kExplorerPreset) return std::make_unique<ExplorerRecipe>(options, rng);
-  if (from != nullptr) {
-    worlds = worlds_of(*from);
-  } else if (worlds.empty()) {
-    worlds = load_worlds(options.maps);
-  }
-  return std::make_unique<PaperRecipe>(options, rng, std::move(worlds), make_learner);
+  if (from != nullptr) worlds = worlds_of(*from);
+  if (worlds.empty()) worlds = load_worlds(options.maps);
+  return std::make_unique<PaperRecipe>(options, rng, std::move(worlds), learners);
 }
 
 }  // namespace graphdrl

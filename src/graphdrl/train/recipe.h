@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/env/world.h"
 #include "graphdrl/train/checkpoint.h"
+#include "graphdrl/train/learner_source.h"
 #include "graphdrl/train/options.h"
-#include "graphdrl/train/paper_learner.h"
 
 namespace graphdrl {
 
@@ -20,17 +21,17 @@ struct Metric {
   bool curve = true;  // for TensorBoard too
 };
 
+// What TrainingProgress counts.
+struct TrainingUnits {
+  std::string name;     // "episode"
+  std::int64_t count;   // of the whole training
+  std::string samples;  // "steps"
+};
+TrainingUnits units_of(const TrainOptions& options);
+
 class Recipe {
  public:
   virtual ~Recipe() = default;
-
-  // What TrainingProgress counts.
-  struct Units {
-    std::string name;     // "episode"
-    std::int64_t count;   // of the whole training
-    std::string samples;  // "steps"
-  };
-  virtual Units units() const = 0;
 
   // Does one more unit, or the rest of one; adds its samples. `stop` may end it early: then it gives false, and the
   // next call goes on there.
@@ -52,6 +53,6 @@ class Recipe {
 // which holds the maps. worlds: instead of options.maps, where there are any. Throws Error on maps that do not fit the
 // options.
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
-                                    const MakePaperLearner& make_learner, std::vector<World> worlds = {});
+                                    const LearnerSource& learners, std::vector<World> worlds = {});
 
 }  // namespace graphdrl

@@ -96,35 +96,29 @@ RunDirectory SeedRuns::run_directory_in(const std::filesystem::path& folder, std
   return RunDirectory(folder / fmt::format("seed-{}", seed));
 }
 
-SeedRuns::SeedRuns(const SeedsFile& file, const std::filesystem::path& folder, const MakePaperLearner& make_learner,
-                   const MakePaperLearnerGroup& make_group)
-    : folder_(folder),
-      trainings_(
-          planned_runs(file, folder), make_learner,
-          file.options.preset == kPaperPreset && file.options.device != "cpu" ? make_group : MakePaperLearnerGroup()) {}
+SeedRuns::SeedRuns(const SeedsFile& file, const std::filesystem::path& folder)
+    : folder_(folder), trainings_(planned_runs(file, folder)) {}
 
 SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t> seeds,
-                         const std::filesystem::path& folder, const MakePaperLearner& make_learner,
-                         const MakePaperLearnerGroup& make_group) {
+                         const std::filesystem::path& folder, const LearnerSource& learners) {
   if (are_in(folder)) {
     throw Error({.what = "the folder holds runs already",
                  .expected = "a new folder, or --resume to go on with them",
                  .where = folder.string()});
   }
   const SeedsFile file{.seeds = std::move(seeds), .options = options};
-  Trainer::check(options, make_learner);
+  Trainer::check(options, learners);
   for (const PlannedRun& run : planned_runs(file, folder)) run.directory.require_new();
   prepare_folder(folder);
   Json json = config_json(options);
   json.erase("seed");
   json[kSeedsKey] = file.seeds;
   write_file(seeds_file(folder), json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
-  return {file, folder, make_learner, make_group};
+  return {file, folder};
 }
 
-SeedRuns SeedRuns::resume(const std::filesystem::path& folder, const MakePaperLearner& make_learner,
-                          const MakePaperLearnerGroup& make_group) {
-  return {read_seeds(folder), folder, make_learner, make_group};
+SeedRuns SeedRuns::resume(const std::filesystem::path& folder) {
+  return {read_seeds(folder), folder};
 }
 
 }  // namespace graphdrl

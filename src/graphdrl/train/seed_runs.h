@@ -23,17 +23,13 @@ SeedsFile read_seeds(const std::filesystem::path& folder);
 
 class SeedRuns {
  public:
-  // Begins a run for each seed: writes FOLDER/seeds.json, configurations and checkpoints 0. Throws Error, as
-  // Trainer::start, and where the folder holds such runs already.
+  // Plans a run for each seed: writes FOLDER/seeds.json. Throws Error, as Trainer::start, and where the folder holds
+  // such runs already.
   static SeedRuns start(const TrainOptions& options, std::vector<std::uint64_t> seeds,
-                        const std::filesystem::path& folder,
-                        const MakePaperLearner& make_learner = make_paper_cpu_learner,
-                        const MakePaperLearnerGroup& make_group = {});
+                        const std::filesystem::path& folder, const LearnerSource& learners = kCpuLearners);
 
   // Goes on with the runs of a folder. Throws Error where its files are not whole.
-  static SeedRuns resume(const std::filesystem::path& folder,
-                         const MakePaperLearner& make_learner = make_paper_cpu_learner,
-                         const MakePaperLearnerGroup& make_group = {});
+  static SeedRuns resume(const std::filesystem::path& folder);
 
   // Whether a folder holds the runs of many seeds.
   static bool are_in(const std::filesystem::path& folder);
@@ -44,8 +40,7 @@ class SeedRuns {
   SideBySide& trainings() { return trainings_; }  // in the order of the seeds
 
  private:
-  SeedRuns(const SeedsFile& file, const std::filesystem::path& folder, const MakePaperLearner& make_learner,
-           const MakePaperLearnerGroup& make_group);
+  SeedRuns(const SeedsFile& file, const std::filesystem::path& folder);
 
   std::filesystem::path folder_;
   SideBySide trainings_;

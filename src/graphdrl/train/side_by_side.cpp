@@ -39,17 +39,43 @@ std::vector<std::vector<int>> runs_alike(const std::vector<PlannedRun>& runs) {
   return kinds;
 }
 
+// Each run on a thread of its own, with a source of its own, which goes with its thread.
+void run_together(const std::vector<int>& runs, std::vector<std::unique_ptr<LearnerSource>> sources,
+                  const std::function<void(int run, const LearnerSource&)>& train) {
+  std::vector<std::exception_ptr> failures(runs.size());
+  std::vector<std::thread> threads;
+  threads.reserve(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    try {
+      threads.emplace_back([&, i, source = std::move(sources[i])] {
+        try {
+          train(runs[i], *source);
+        } catch (...) {
+          failures[i] = std::current_exception();
+        }
+      });
+    } catch (const std::system_error&) {  // too many threads
+      failures[i] = std::current_exception();
+    }
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
+bool is_begun(const PlannedRun& run) {
+  return std::filesystem::exists(run.directory.checkpoint());
+}
+
 }  // namespace
 
-SideBySide::SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group)
-    : runs_(std::move(runs)), make_learner_(std::move(make_learner)), make_group_(std::move(make_group)) {
-  for (const PlannedRun& run : runs_) {
-    const bool there = std::filesystem::exists(run.directory.checkpoint());
-    if (there) require_same_options(run);
-    const auto trainer = there ? Trainer::resume(run.directory, make_learner_)
-                               : Trainer::start(run.options, run.directory, make_learner_);
-    progress_.push_back(trainer->progress());
-    units_ = trainer->units();
+SideBySide::SideBySide(std::vector<PlannedRun> runs)
+    : runs_(std::move(runs)), progress_(runs_.size()), units_(units_of(runs_.front().options)) {
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    if (!is_begun(runs_[i])) continue;
+    require_same_options(runs_[i]);
+    progress_[i] = Checkpoint::read(runs_[i].directory.checkpoint()).progress();
   }
 }
 
@@ -59,69 +85,51 @@ std::int64_t SideBySide::sum(std::int64_t TrainingProgress::*member) const {
   return all;
 }
 
-bool SideBySide::run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell) {
+bool SideBySide::run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell,
+                     const LearnerSource& learners) {
   const auto start = std::chrono::steady_clock::now();
   const auto trained = [&](const TrainingProgress& progress) { return progress.done == units_.count; };
   const std::int64_t samples_before = sum(&TrainingProgress::samples);
   std::mutex mutex;
-  const Train train = [&](int i, const MakePaperLearner& make_learner) {
-    const auto index = static_cast<std::size_t>(i);
-    if (trained(progress_[index]) || stop()) return;
-    const RunDirectory& directory = runs_[index].directory;
-    try {
-      Trainer::resume(directory, make_learner)->run(stop, [&](const TrainingNews& news) {
-        const std::lock_guard lock(mutex);
-        progress_[index] = news.progress;
-        const double session_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        const std::int64_t samples = sum(&TrainingProgress::samples) - samples_before;
-        tell({.runs_done = static_cast<int>(std::count_if(progress_.begin(), progress_.end(), trained)),
-              .units_done = sum(&TrainingProgress::done),
-              .units = units_.count * std::ssize(runs_),
-              .samples_per_s = static_cast<double>(samples) / std::max(session_s, 1e-9)});
-      });
-    } catch (const Error&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw std::runtime_error(fmt::format("{}: {}", directory.path().string(), error.what()));
-    }
+  const auto train_one = [&](int run, const LearnerSource& source) {
+    TrainingProgress& progress = progress_[static_cast<std::size_t>(run)];
+    if (trained(progress) || stop()) return;
+    train(run, source, stop, [&](const TrainingProgress& now) {
+      const std::lock_guard lock(mutex);
+      progress = now;
+      const double session_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const std::int64_t samples = sum(&TrainingProgress::samples) - samples_before;
+      tell({.runs_done = static_cast<int>(std::count_if(progress_.begin(), progress_.end(), trained)),
+            .units_done = sum(&TrainingProgress::done),
+            .units = units_.count * std::ssize(runs_),
+            .samples_per_s = static_cast<double>(samples) / std::max(session_s, 1e-9)});
+    });
   };
-  if (make_group_) {
-    for (const std::vector<int>& alike : runs_alike(runs_)) run_together(alike, train);
-  } else {
-    parallel_for(static_cast<int>(runs_.size()), [&](int i) { train(i, make_learner_); });
+  std::vector<int> alone;
+  for (const std::vector<int>& alike : runs_alike(runs_)) {
+    auto sources = learners.make_together(runs_[alike.front()].options.device, static_cast<int>(alike.size()));
+    if (sources.empty()) {
+      alone.insert(alone.end(), alike.begin(), alike.end());
+    } else {
+      run_together(alike, std::move(sources), train_one);
+    }
   }
+  parallel_for(static_cast<int>(alone.size()), [&](int i) { train_one(alone[i], learners); });
   return std::all_of(progress_.begin(), progress_.end(), trained);
 }
 
-// Each on a thread of its own, their learners as one.
-void SideBySide::run_together(const std::vector<int>& runs, const Train& train) const {
-  const int count = static_cast<int>(runs.size());
-  const auto group = make_group_(runs_[runs.front()].options.device, count);
-  std::vector<std::exception_ptr> failures(runs.size());
-  std::vector<std::thread> threads;
-  threads.reserve(runs.size());
-  const auto fail = [&](int i) {
-    failures[static_cast<std::size_t>(i)] = std::current_exception();
-    group->leave(i);
-  };
-  for (int i = 0; i < count; ++i) {
-    const auto train_one = [&, i] {
-      try {
-        train(runs[i], group->learner_of(i));
-      } catch (...) {
-        return fail(i);
-      }
-      group->leave(i);
-    };
-    try {
-      threads.emplace_back(train_one);
-    } catch (const std::system_error&) {  // too many threads
-      fail(i);
-    }
-  }
-  for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
+// Begins a run or goes on with it.
+void SideBySide::train(int run, const LearnerSource& learners, const std::function<bool()>& stop,
+                       const std::function<void(const TrainingProgress&)>& tell) const {
+  const PlannedRun& planned = runs_[static_cast<std::size_t>(run)];
+  try {
+    const auto trainer = is_begun(planned) ? Trainer::resume(planned.directory, learners)
+                                           : Trainer::start(planned.options, planned.directory, learners);
+    trainer->run(stop, [&](const TrainingNews& news) { tell(news.progress); });
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw std::runtime_error(fmt::format("{}: {}", planned.directory.path().string(), error.what()));
   }
 }
 

@@ -26,31 +26,29 @@ struct SideBySideNews {
 
 class SideBySide {
  public:
-  // Begins the runs that are not there yet, and reads where the others stand. Throws Error, as Trainer does, and where
-  // a directory holds a run of other options. REQUIRES: at least one run; all of one preset, length and device.
-  // make_group: for another device than the CPU. There runs that differ in their seeds alone are trained together, and
-  // the others after them.
-  SideBySide(std::vector<PlannedRun> runs, MakePaperLearner make_learner, MakePaperLearnerGroup make_group = {});
+  // Reads where the runs stand that are begun. Throws Error where a directory holds a run of other options.
+  // REQUIRES: at least one run; all of one preset, length and device.
+  explicit SideBySide(std::vector<PlannedRun> runs);
 
-  // On threads() threads, until all are trained or `stop` says so; then all are saved. Memory: that of as many
-  // trainings as there are threads; on another device, of those that are trained together. `tell` may be called on any
-  // thread, but never twice at a time. Gives whether all are trained.
-  bool run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell);
+  // Begins the others and goes on with all, on threads() threads, until they are trained or `stop` says so; then those
+  // that are begun are saved. Where the device works for several at once, runs that differ in their seeds alone are
+  // trained together. Memory: that of the trainings under way. `tell` may be called on any thread, but never twice at a
+  // time. Throws Error, as Trainer does. Gives whether all are trained.
+  bool run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell,
+           const LearnerSource& learners = kCpuLearners);
 
   const std::vector<PlannedRun>& runs() const { return runs_; }
   const std::vector<TrainingProgress>& progress() const { return progress_; }  // of the runs
-  const Recipe::Units& units() const { return units_; }                        // of one run
+  const TrainingUnits& units() const { return units_; }                        // of one run
 
  private:
-  using Train = std::function<void(int run, const MakePaperLearner&)>;
-  void run_together(const std::vector<int>& runs, const Train& train) const;
+  void train(int run, const LearnerSource& learners, const std::function<bool()>& stop,
+             const std::function<void(const TrainingProgress&)>& tell) const;
   std::int64_t sum(std::int64_t TrainingProgress::*member) const;
 
   std::vector<PlannedRun> runs_;
-  MakePaperLearner make_learner_;
-  MakePaperLearnerGroup make_group_;
   std::vector<TrainingProgress> progress_;
-  Recipe::Units units_;
+  TrainingUnits units_;
 };
 
 }  // namespace graphdrl

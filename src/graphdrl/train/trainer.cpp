@@ -8,13 +8,13 @@
 
 namespace graphdrl {
 
-Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from,
-                 const MakePaperLearner& make_learner, std::vector<World> worlds)
+Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const LearnerSource& learners,
+                 std::vector<World> worlds)
     : options_(options),
       run_(std::move(run)),
       rng_(options.seed),
-      recipe_(make_recipe(options, rng_, from, make_learner, std::move(worlds))),
-      units_(recipe_->units()) {
+      recipe_(make_recipe(options, rng_, from, learners, std::move(worlds))),
+      units_(units_of(options)) {
   if (from == nullptr) return;
   progress_ = from->progress();
   if (progress_.done > units_.count) {
@@ -24,25 +24,26 @@ Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint
   rng_ = from->rng();
 }
 
-void Trainer::check(const TrainOptions& options, const MakePaperLearner& make_learner) {
+void Trainer::check(const TrainOptions& options, const LearnerSource& learners) {
   validate(options);
-  Trainer(options, RunDirectory(""), nullptr, make_learner, {});
+  Trainer(options, RunDirectory(""), nullptr, learners, {});
 }
 
 std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDirectory& run,
-                                        const MakePaperLearner& make_learner, std::vector<World> worlds) {
+                                        const LearnerSource& learners, std::vector<World> worlds) {
   validate(options);
-  std::unique_ptr<Trainer> trainer(new Trainer(options, run, nullptr, make_learner, std::move(worlds)));
+  std::unique_ptr<Trainer> trainer(new Trainer(options, run, nullptr, learners, std::move(worlds)));
   run.create();
   write_config(run.config(), options);
   trainer->save();
   return trainer;
 }
 
-std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const MakePaperLearner& make_learner) {
+std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const LearnerSource& learners) {
+  const Checkpoint checkpoint = Checkpoint::read(run.checkpoint());
   const TrainOptions options = read_config(run.config());
-  const Checkpoint checkpoint = Checkpoint::read(run.checkpoint(), options.preset);
-  return std::unique_ptr<Trainer>(new Trainer(options, run, &checkpoint, make_learner, {}));
+  checkpoint.require_preset(options.preset);
+  return std::unique_ptr<Trainer>(new Trainer(options, run, &checkpoint, learners, {}));
 }
 
 bool Trainer::run(const std::function<bool()>& stop, const std::function<void(const TrainingNews&)>& tell) {

@@ -25,17 +25,15 @@ struct TrainingNews {
 class Trainer {
  public:
   // Throws Error on what start() would refuse before it writes anything.
-  static void check(const TrainOptions& options, const MakePaperLearner& make_learner = make_paper_cpu_learner);
+  static void check(const TrainOptions& options, const LearnerSource& learners);
 
   // Begins a new run: writes the configuration and checkpoint 0. Throws Error on bad options and where the directory
-  // cannot be written. `make_learner`: for the paper's device. worlds: instead of options.maps, where there are any.
+  // cannot be written. worlds: instead of options.maps, where there are any.
   static std::unique_ptr<Trainer> start(const TrainOptions& options, const RunDirectory& run,
-                                        const MakePaperLearner& make_learner = make_paper_cpu_learner,
-                                        std::vector<World> worlds = {});
+                                        const LearnerSource& learners = kCpuLearners, std::vector<World> worlds = {});
 
   // Goes on with the run in a directory. Throws Error where its files are not whole.
-  static std::unique_ptr<Trainer> resume(const RunDirectory& run,
-                                         const MakePaperLearner& make_learner = make_paper_cpu_learner);
+  static std::unique_ptr<Trainer> resume(const RunDirectory& run, const LearnerSource& learners = kCpuLearners);
 
   Trainer(const Trainer&) = delete;
 
@@ -45,11 +43,11 @@ class Trainer {
 
   const RunDirectory& run_directory() const { return run_; }
   const TrainingProgress& progress() const { return progress_; }
-  const Recipe::Units& units() const { return units_; }
+  const TrainingUnits& units() const { return units_; }
 
  private:
   // Touches no file.
-  Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const MakePaperLearner& make_learner,
+  Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const LearnerSource& learners,
           std::vector<World> worlds);
 
   bool finished() const { return progress_.done == units_.count; }
@@ -61,7 +59,7 @@ class Trainer {
   RunDirectory run_;
   Rng rng_;
   std::unique_ptr<Recipe> recipe_;
-  Recipe::Units units_;
+  TrainingUnits units_;
   TrainingProgress progress_;
 };
 

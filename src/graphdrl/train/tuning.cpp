@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "graphdrl/base/error.h"
@@ -131,34 +132,28 @@ std::vector<TuneRound> parse_rounds(const std::string& text) {
   }
 }
 
-Tuning::Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder,
-               MakePaperLearner make_learner, MakePaperLearnerGroup make_group)
-    : options_(std::move(options)),
-      settings_(std::move(settings)),
-      folder_(std::move(folder)),
-      make_learner_(std::move(make_learner)),
-      make_group_(options_.device == "cpu" ? MakePaperLearnerGroup() : std::move(make_group)) {}
+Tuning::Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder)
+    : options_(std::move(options)), settings_(std::move(settings)), folder_(std::move(folder)) {}
 
-Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, MakePaperLearner make_learner,
-                     MakePaperLearnerGroup make_group) {
+Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, const LearnerSource& learners) {
   if (std::filesystem::exists(tune_file(folder)) || std::filesystem::exists(folder / "maps")) {
     throw Error({.what = "the folder holds a search already",
                  .expected = "a new folder, or --resume to go on with it",
                  .where = folder.string()});
   }
-  Trainer::check(options_of(options, Setting::object(), ""), make_learner);  // refuses what all would
+  Trainer::check(options_of(options, Setting::object(), ""), learners);  // refuses what all would
   std::vector<Setting> settings = draw_settings(options.rounds.front().settings, options.seed);
   std::set<std::vector<bool>> taken;
   for (const World& world : load_worlds({"paper"})) taken.insert(world.map()->blocked);
   write_maps(folder / "maps" / "validation", Split::kValidation, options.validation_maps, taken);
   write_maps(folder / "maps" / "train", Split::kTrain, options.train_maps, taken);
-  Tuning tuning(options, std::move(settings), std::move(folder), std::move(make_learner), std::move(make_group));
+  Tuning tuning(options, std::move(settings), std::move(folder));
   const Json json = {{"options", to_json(options)}, {"settings", tuning.settings_}};
   write_file(tune_file(tuning.folder_), json.dump(2) + '\n');
   return tuning;
 }
 
-Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learner, MakePaperLearnerGroup make_group) {
+Tuning Tuning::resume(std::filesystem::path folder) {
   const std::string source = tune_file(folder).string();
   const std::string text = read_file(source);
   require_shallow_json(text, source);
@@ -181,7 +176,7 @@ Tuning Tuning::resume(std::filesystem::path folder, MakePaperLearner make_learne
       throw Error({.what = "the first setting is not the paper's", .where = source});
     }
     for (const Setting& setting : settings) options_of(options, setting, folder / "maps" / "train");
-    return {std::move(options), std::move(settings), std::move(folder), std::move(make_learner), std::move(make_group)};
+    return {std::move(options), std::move(settings), std::move(folder)};
   } catch (const Json::exception& error) {
     throw Error(
         {.what = fmt::format("not a search for hyper-parameters ({})", escaped(error.what())), .where = source});
@@ -217,10 +212,13 @@ std::vector<PlannedRun> Tuning::runs_of(std::size_t round) const {
 }
 
 bool Tuning::run(const std::function<bool()>& stop,
-                 const std::function<void(std::size_t round, const SideBySideNews&)>& tell) {
+                 const std::function<void(std::size_t round, const SideBySideNews&)>& tell,
+                 const LearnerSource& learners) {
   for (std::size_t round = scores_.size(); round < options_.rounds.size(); ++round) {
-    SideBySide trainings(runs_of(round), make_learner_, make_group_);
-    if (!trainings.run(stop, [&](const SideBySideNews& news) { tell(round, news); })) return false;
+    SideBySide trainings(runs_of(round));
+    if (!trainings.run(
+            stop, [&](const SideBySideNews& news) { tell(round, news); }, learners))
+      return false;
     scores_.push_back(score(round));
   }
   return true;

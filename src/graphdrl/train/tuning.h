@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,14 +59,13 @@ class Tuning {
   // Draws the settings and the maps, and writes FOLDER/tune.json and FOLDER/maps/. Throws Error where the folder holds
   // a search already.
   static Tuning start(const TuneOptions& options, std::filesystem::path folder,
-                      MakePaperLearner make_learner = make_paper_cpu_learner, MakePaperLearnerGroup make_group = {});
-  static Tuning resume(std::filesystem::path folder, MakePaperLearner make_learner = make_paper_cpu_learner,
-                       MakePaperLearnerGroup make_group = {});
+                      const LearnerSource& learners = kCpuLearners);
+  static Tuning resume(std::filesystem::path folder);
 
   // All rounds, or until `stop` says so; gives whether it is finished. The runs lie in
   // FOLDER/round-R/setting-I/seed-S.
-  bool run(const std::function<bool()>& stop,
-           const std::function<void(std::size_t round, const SideBySideNews&)>& tell);
+  bool run(const std::function<bool()>& stop, const std::function<void(std::size_t round, const SideBySideNews&)>& tell,
+           const LearnerSource& learners = kCpuLearners);
 
   const TuneOptions& options() const { return options_; }
   const std::vector<Setting>& settings() const { return settings_; }
@@ -74,8 +73,7 @@ class Tuning {
   std::vector<ValueEffect> effects() const;                           // REQUIRES: the first round is done
 
  private:
-  Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder,
-         MakePaperLearner make_learner, MakePaperLearnerGroup make_group);
+  Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder);
 
   std::vector<std::size_t> settings_of(std::size_t round) const;
   std::vector<PlannedRun> runs_of(std::size_t round) const;
@@ -84,8 +82,6 @@ class Tuning {
   TuneOptions options_;
   std::vector<Setting> settings_;
   std::filesystem::path folder_;
-  MakePaperLearner make_learner_;
-  MakePaperLearnerGroup make_group_;  // for another device than the CPU
   std::vector<RoundScores> scores_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "graphdrl/train/paper_kernel_learner.h"
@@ -47,9 +48,9 @@ class Training {
  public:
   Training(std::uint64_t seed, int steps, bool moves) : seed_(seed), steps_(steps), moves_(moves) {}
 
-  void run(const MakePaperLearner& make_learner, const PaperLearnerOptions& options) {
+  void run(const LearnerSource& learners, const PaperLearnerOptions& options) {
     Rng rng(seed_);
-    const std::unique_ptr<PaperLearner> learner = make_learner("cpu", options, rng);
+    const std::unique_ptr<PaperLearner> learner = learners.make("cpu", options, rng);
     for (int step = 0; step < steps_; ++step) {
       const World& world = step % 2 == 0 ? large_ : small_;
       const PaperMinibatch batch = random_minibatch(world, 6, rng);
@@ -99,15 +100,15 @@ TEST(PaperStack, LearnsWhatEachTrainingLearnsAlone) {
     // Different seeds; one that never moves, one that leaves early.
     const auto make = [] { return std::vector<Training>{{1, 12, true}, {2, 12, false}, {3, 2, true}, {4, 12, true}}; };
     std::vector<Training> alone = make();
-    for (Training& training : alone) training.run(make_paper_cpu_learner, options);
+    for (Training& training : alone) training.run(kCpuLearners, options);
 
     std::vector<Training> together = make();
-    PaperStack stack(torch::Device(device), static_cast<int>(together.size()));
+    auto sources = stack_sources(device, static_cast<int>(together.size()));
     std::vector<std::thread> threads;
-    for (int i = 0; i < std::ssize(together); ++i) {
+    for (std::size_t i = 0; i < together.size(); ++i) {
       threads.emplace_back([&, i] {
-        together[i].run(stack.learner_of(i), options);
-        stack.leave(i);
+        together[i].run(*sources[i], options);
+        sources[i].reset();
       });
     }
     for (std::thread& thread : threads) thread.join();
@@ -137,7 +138,7 @@ TEST(PaperStack, TakesAndGivesStates) {
     SCOPED_TRACE(device);
     PaperStack stack(torch::Device(device), 1);
     Rng other(6);
-    const auto learner = stack.learner_of(0)("", {}, other);
+    const auto learner = stack.learner(0, {}, other);
     for (int i = 0; i < 5; ++i) learner->learn(random_minibatch(world, 4, other), other);
     EXPECT_FALSE(std::ranges::equal(learner->state().online.values(), kernel.state().online.values()));
     learner->set_state(kernel.state());
@@ -166,7 +167,7 @@ TEST(PaperStack, KeepsLossesUntilTheyAreTaken) {
     PaperStack stack(torch::Device(device), 1);
     Rng rng(1);
     Rng same(1);
-    const auto learner = stack.learner_of(0)("", {}, rng);
+    const auto learner = stack.learner(0, {}, rng);
     PaperKernelLearner kernel({}, same);
     for (int i = 0; i < 70; ++i) {
       learner->learn(random_minibatch(world, 2, rng), rng);
@@ -179,6 +180,14 @@ TEST(PaperStack, KeepsLossesUntilTheyAreTaken) {
     EXPECT_TRUE(learner->take_losses().empty());
   }
 }
+
+// All by stacks, on the CPU too.
+class StackedLearners final : public LearnerSource {
+ public:
+  std::vector<std::unique_ptr<LearnerSource>> make_together(const std::string& device, int trainings) const override {
+    return stack_sources(device, trainings);
+  }
+};
 
 // Whole trainings by the stack: the episodes, steps and about the losses of trainings alone. One has another batch
 // size: it cannot be trained together with the others.
@@ -199,11 +208,13 @@ TEST(PaperStack, TrainsManySeedsAsSingleRuns) {
     for (const std::uint64_t seed : seeds) {
       runs.push_back({options_of(seed, device), RunDirectory(folder / (device + std::to_string(seed)))});
     }
-    SideBySide stacked(runs, make_paper_device_learner, make_paper_stack);
+    const StackedLearners learners;
+    SideBySide stacked(runs);
     std::atomic<int> asked = 0;
-    EXPECT_FALSE(stacked.run([&] { return ++asked > 60; }, [](const SideBySideNews&) {}));  // stopped and resumed
-    SideBySide resumed(runs, make_paper_device_learner, make_paper_stack);
-    ASSERT_TRUE(resumed.run([] { return false; }, [](const SideBySideNews&) {}));
+    EXPECT_FALSE(
+        stacked.run([&] { return ++asked > 60; }, [](const SideBySideNews&) {}, learners));  // stopped and resumed
+    SideBySide resumed(runs);
+    ASSERT_TRUE(resumed.run([] { return false; }, [](const SideBySideNews&) {}, learners));
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       const RunDirectory alone(folder / (device + "-alone" + std::to_string(seeds[i])));
       train_in(alone.path(), options_of(seeds[i], "cpu"));

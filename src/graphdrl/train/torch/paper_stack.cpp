@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "graphdrl/nn/paper_features.h"
-#include "graphdrl/train/paper_q_network.h"
 
 namespace graphdrl {
 
@@ -73,15 +72,34 @@ class StackedLearner final : public PaperLearner {
   double dropout_;
 };
 
+namespace {
+
+// Of one of a stack's trainings.
+class StackSource final : public LearnerSource {
+ public:
+  StackSource(std::shared_ptr<PaperStack> stack, int training) : stack_(std::move(stack)), training_(training) {}
+  ~StackSource() override { stack_->leave(training_); }
+  StackSource(const StackSource&) = delete;
+
+  std::unique_ptr<PaperLearner> make(const std::string& /*device*/, const PaperLearnerOptions& options,
+                                     Rng& rng) const override {
+    return stack_->learner(training_, options, rng);
+  }
+
+ private:
+  std::shared_ptr<PaperStack> stack_;
+  int training_;
+};
+
+}  // namespace
+
 PaperStack::PaperStack(torch::Device device, int trainings)
     : seats_(static_cast<std::size_t>(trainings)), present_(trainings), stream_(device) {
   torch::set_num_threads(1);  // so that sums on the CPU run in one order
 }
 
-MakePaperLearner PaperStack::learner_of(int training) {
-  return [this, training](const std::string&, const PaperLearnerOptions& options, Rng& rng) {
-    return std::make_unique<StackedLearner>(*this, training, options, rng);
-  };
+std::unique_ptr<PaperLearner> PaperStack::learner(int training, const PaperLearnerOptions& options, Rng& rng) {
+  return std::make_unique<StackedLearner>(*this, training, options, rng);
 }
 
 void PaperStack::begin(const PaperLearnerOptions& options) {
@@ -348,14 +366,25 @@ void PaperStack::set_state_of(int training, const PaperState& state) {
   steps_[training] = static_cast<double>(state.adam.steps);
 }
 
-std::unique_ptr<PaperLearner> make_paper_device_learner(const std::string& device, const PaperLearnerOptions& options,
-                                                        Rng& rng) {
-  if (device == "cpu") return make_paper_cpu_learner(device, options, rng);
+std::vector<std::unique_ptr<LearnerSource>> stack_sources(const std::string& device, int trainings) {
+  const auto stack = std::make_shared<PaperStack>(torch::Device(device), trainings);
+  std::vector<std::unique_ptr<LearnerSource>> sources;
+  for (int training = 0; training < trainings; ++training) {
+    sources.push_back(std::make_unique<StackSource>(stack, training));
+  }
+  return sources;
+}
+
+std::unique_ptr<PaperLearner> DeviceLearners::make(const std::string& device, const PaperLearnerOptions& options,
+                                                   Rng& rng) const {
+  if (device == "cpu") return LearnerSource::make(device, options, rng);
   return std::make_unique<StackedLearner>(std::make_unique<PaperStack>(torch::Device(device), 1), options, rng);
 }
 
-std::unique_ptr<PaperLearnerGroup> make_paper_stack(const std::string& device, int trainings) {
-  return std::make_unique<PaperStack>(torch::Device(device), trainings);
+std::vector<std::unique_ptr<LearnerSource>> DeviceLearners::make_together(const std::string& device,
+                                                                          int trainings) const {
+  if (device == "cpu") return {};
+  return stack_sources(device, trainings);
 }
 
 }  // namespace graphdrl

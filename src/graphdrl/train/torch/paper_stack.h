@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "graphdrl/train/adam.h"
+#include "graphdrl/train/learner_source.h"
 #include "graphdrl/train/paper_learner.h"
 #include "graphdrl/train/torch/device_stream.h"
 #include "graphdrl/train/torch/known_graphs.h"
@@ -17,15 +18,16 @@
 
 namespace graphdrl {
 
-class PaperStack final : public PaperLearnerGroup {
+class PaperStack {
  public:
   // Throws Error where LibTorch does not have the device.
   PaperStack(torch::Device device, int trainings);
 
-  // As PaperLearner, of one of the trainings. REQUIRES: all have the same options and batch size.
-  MakePaperLearner learner_of(int training) override;
-  // That training asks for nothing more. Must be called for each, or the others wait for ever.
-  void leave(int training) override;
+  // The learner of a training, from 0 up, which the stack must outlive. REQUIRES: all have the same options and batch
+  // size.
+  std::unique_ptr<PaperLearner> learner(int training, const PaperLearnerOptions& options, Rng& rng);
+  // That training asks for nothing more. Must be called once for each, or the others wait for ever.
+  void leave(int training);
 
  private:
   friend class StackedLearner;
@@ -118,11 +120,16 @@ class PaperStack final : public PaperLearnerGroup {
   std::map<std::pair<Request, std::int64_t>, Work> works_;  // by kind and batch size
 };
 
-// A learner alone on a device, by its name. Throws Error where LibTorch does not have it.
-std::unique_ptr<PaperLearner> make_paper_device_learner(const std::string& device, const PaperLearnerOptions& options,
-                                                        Rng& rng);
+// One source for each training of a stack on a device; a training leaves when its source is destroyed. Throws Error
+// where LibTorch does not have the device.
+std::vector<std::unique_ptr<LearnerSource>> stack_sources(const std::string& device, int trainings);
 
-// Makes a stack on a device by its name. Throws Error where LibTorch does not have the device.
-std::unique_ptr<PaperLearnerGroup> make_paper_stack(const std::string& device, int trainings);
+// Learners on the CPU by its kernels, on other devices by LibTorch, those of one kind of training by one stack.
+class DeviceLearners final : public LearnerSource {
+ public:
+  std::unique_ptr<PaperLearner> make(const std::string& device, const PaperLearnerOptions& options,
+                                     Rng& rng) const override;
+  std::vector<std::unique_ptr<LearnerSource>> make_together(const std::string& device, int trainings) const override;
+};
 
 }  // namespace graphdrl

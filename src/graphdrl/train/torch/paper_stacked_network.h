@@ -30,7 +30,7 @@ NamedTensors stacked_tensors(const torch::Tensor& values, bool learning);
 // The gradient of a loss by the trainable ones of `tensors`. [S, trainable], in the order of the flat buffers.
 torch::Tensor stacked_gradient(const torch::Tensor& loss, const NamedTensors& tensors);
 
-// q [S, B, A] of x [S, B, n, F]. With `keep_scale` [S, B, 256] in train mode, as PaperQNetwork::forward_train: the
+// q [S, B, A] of x [S, B, n, F]. With `keep_scale` [S, B, 256] in train mode, as PaperNetwork::q_values: the
 // running statistics of the trainings that are `active` [S] move. Without it in eval mode.
 torch::Tensor stacked_q_values(const StackedGraphs& graphs, const torch::Tensor& x, const NamedTensors& tensors,
                                const torch::Tensor& keep_scale = {}, const torch::Tensor& active = {});
