@@ -1,6 +1,6 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -10,17 +10,16 @@
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/io/text.h"
 #include "graphdrl/planners/registry.h"
-#include "graphdrl/report/map_drawing.h"
 #include "graphdrl/report/plan_files.h"
 #include "graphdrl/report/progress.h"
+#include "graphdrl/report/terminal_picture.h"
 
 namespace graphdrl {
 namespace {
 
 constexpr double kProgressAfterS = 1;
-constexpr std::size_t kLongestWalkPrinted = 2000;  // nodes
-constexpr std::size_t kWidestDrawing = 240;        // characters
 
 struct PlanOptions {
   std::string map;
@@ -31,6 +30,7 @@ struct PlanOptions {
   PlanRequest request;
   std::optional<std::int64_t> iterations;
   std::vector<std::string> out;
+  bool walk = false;
   bool json = false;
 };
 
@@ -75,6 +75,12 @@ std::string format_bound(const World& world, const PlanReport& answer) {
                      world.percent_of_all(plan.bound), world.percent_of_all(plan.bound - plan.prize));
 }
 
+std::string as_comments(std::string_view text) {
+  std::string commented;
+  for (Lines lines(text); lines.next();) commented += fmt::format("# {}\n", lines.line());
+  return commented;
+}
+
 std::string format_plan(const World& world, const Task& task, const PlanOptions& options, const PlanReport& answer) {
   const Plan& plan = answer.plan;
   std::string text = fmt::format("{}, {} from {}", world.name(), policy_label(options.request.policy),
@@ -92,17 +98,14 @@ std::string format_plan(const World& world, const Task& task, const PlanOptions&
     text += fmt::format("         {} node{} cannot be reached from there\n", answer.unreachable,
                         answer.unreachable == 1 ? "" : "s");
   }
-  std::vector<std::string> names;
-  if (plan.walk.size() > kLongestWalkPrinted) {
-    text += fmt::format("walk     {} steps; --out FILE or --json gives them\n", plan.walk.size() - 1);
-    return text;
-  }
-  for (const NodeId node : plan.walk) {
-    names.push_back(world.labels().empty() ? std::to_string(node) : escaped(world.labels()[node]));
-  }
-  text += fmt::format("walk     {}\n", fmt::join(names, " "));
-  const std::size_t digits = std::to_string(plan.walk.size()).size() + 1;
-  if (world.has_cells() && world.map()->cols * digits <= kWidestDrawing) text += "\n" + draw_map_text(world, plan.walk);
+  text += fmt::format("walk     {} steps", plan.walk.size() - 1);
+  if (options.walk) return as_comments(text + '\n') + format_walk(world, plan.walk);
+  text += fmt::format(" to {}; --walk prints them\n", name_of(world, plan.walk.back()));
+  if (!world.has_cells()) return text;
+  // The picture and the text above it fit the screen, with a line for the prompt.
+  Screen screen = screen_of(stdout);
+  screen.lines -= static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 2;
+  text += '\n' + draw_walk(world, plan.walk, screen);
   return text;
 }
 
@@ -208,7 +211,9 @@ void add_plan_command(CLI::App& app) {
       ->check(not_empty())
       ->type_name("FILE");
   add_seed_option(*command, options->request.seed, "For search and for random policies");
-  command->add_flag("--json", options->json, "Print one JSON document");
+  auto* const json = command->add_flag("--json", options->json, "Print one JSON document");
+  command->add_flag("--walk", options->walk, "Print the walk instead of a picture, a node a line, as `check` reads it")
+      ->excludes(json);
   add_map_options(*command, options->reading);
   add_threads_option(*command);
   command->callback([options] { plan(*options); });

@@ -77,6 +77,19 @@ std::string plan_csv(const PlanReport& report) {
   return text;
 }
 
+}  // namespace
+
+std::string format_walk(const World& world, std::span<const NodeId> walk) {
+  const bool labels = !world.labels().empty();
+  std::string text = labels ? "node,label\n" : "node\n";
+  for (const NodeId node : walk) {
+    text += labels ? fmt::format("{},{}\n", node, csv(escaped(world.labels()[node]))) : fmt::format("{}\n", node);
+  }
+  return text;
+}
+
+namespace {
+
 GraphMap graph_of(const World& world) {
   GraphMap map{.graph = world.graph(),
                .blocked = world.blocked(),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,9 @@ std::vector<double> costs_so_far(const PlanReport& report);
 // Two or three lines: what it visits, what it costs, and the bound.
 std::vector<std::string> plan_summary(const PlanReport& report);
 
+// The walk, a node a line below a header: node ids, with the labels beside them. read_plan() reads it.
+std::string format_walk(const World& world, std::span<const NodeId> walk);
+
 // Throws Error where no plan is written in a file with this ending: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
 // nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h); and where the format needs coordinates that
 // the world does not have.
@@ -29,10 +33,11 @@ void write_plan(const PlanReport& report, const std::string& file);
 // The endings, for help texts.
 std::string plan_file_endings();
 
-// A plan from a file: the document above, an array of node ids, or lines with a node each, the first field of CSV or,
-// below a header, the column `node`, `id` or `label`. Nodes are named as for parse_node(). Policy, budget, end and
-// bound are what the document says; without them the file's name, what the walk costs, anywhere, and none. Throws
-// Error, naming the file and the line, also where a step follows no edge.
+// A plan from a file: the document above, an array of node ids, or lines. Lines have a node each: the first field of
+// CSV or, below a header, the column `node`, `id` or `label`; a single line without a header has the whole walk. Nodes
+// are named as for parse_node(). Policy, budget, end and bound are what the document says; without them the file's
+// name, what the walk costs, anywhere, and none. Throws Error, naming the file and the line, also where a step follows
+// no edge, and where several lines of several words leave open which of them are nodes.
 PlanReport read_plan(const World& world, const std::string& file);
 
 // The same for a text; `file` is for error messages.
