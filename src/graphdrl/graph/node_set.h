@@ -17,7 +17,7 @@ class NodeSet {
 
   bool contains(NodeId node) const { return (words_[node / 64] >> (node % 64) & 1) != 0; }
   void insert(NodeId node) { words_[node / 64] |= std::uint64_t{1} << (node % 64); }
-  bool empty() const { return words_.empty(); }  // made for no node at all
+  bool empty() const { return words_.empty(); }  // a set over no nodes
   int count() const {
     int sum = 0;
     for (const std::uint64_t word : words_) sum += std::popcount(word);
@@ -32,8 +32,8 @@ class NodeSet {
   std::vector<std::uint64_t> words_;
 };
 
-// One of many sets that differ in few nodes: a set common to all, and a row of bits for the nodes that have a place in
-// it. A plain NodeSet is one without places. Refers to both; valid while they live.
+// One of many sets that differ in few nodes: a set common to all, and a row of bits for the nodes that may differ. A
+// plain NodeSet has no such nodes. Refers to both; valid while they live.
 class NodeSetView {
  public:
   NodeSetView(const NodeSet& set) : common_(&set) {}  // NOLINT(google-explicit-constructor): a set is a view of itself
