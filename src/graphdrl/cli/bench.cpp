@@ -24,7 +24,7 @@ constexpr int kRounds = 15;
 GemmFunction openblas_product() {
 #ifdef GRAPHDRL_OPENBLAS
   return [](const GemmShape& shape, const float* a, const float* b, float* c) {
-    // OpenBLAS on OpenMP keeps its number of threads by the thread that calls it.
+    // OpenBLAS on OpenMP keeps a number of threads for each calling thread.
     thread_local const bool alone = (openblas_set_num_threads(1), true);
     static_cast<void>(alone);
     cblas_sgemm(CblasRowMajor, shape.a_transposed ? CblasTrans : CblasNoTrans, CblasNoTrans, shape.m, shape.n, shape.k,
@@ -38,7 +38,7 @@ GemmFunction openblas_product() {
 Json run_bench() {
   std::uint64_t signature = 0;
   std::array<std::vector<double>, kThreadCounts.size()> steps_per_s;
-  for (int round = 0; round < kRounds; ++round) {  // alternating, so that a change of the machine's speed meets all
+  for (int round = 0; round < kRounds; ++round) {  // alternating, so that a change of the machine's speed affects all
     for (std::size_t i = 0; i < kThreadCounts.size(); ++i) {
       set_threads(kThreadCounts[i]);
       const EnvironmentBench result = bench_environment();

@@ -27,7 +27,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr double kMostSpent = 1e300;  // walks that are shown cost what they cost
+constexpr double kMostSpent = 1e300;  // no limit for walks that are shown
 constexpr double kBudgetStep = 1e-6;  // of a budget that visits all, where costs are no whole numbers
 
 struct MapsOptions {

@@ -132,7 +132,7 @@ std::string policy_of(const PlanOptions& options) {
   throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(options.request.policy, 200)});
 }
 
-// What the options say; the file, where they do not.
+// The task of the options; of the file if they do not say.
 Task task_of(const World& world, const PlanOptions& options) {
   const GivenTask& given = world.given();
   NodeId start = given.start == kNoNode ? world.valid_nodes().front() : given.start;

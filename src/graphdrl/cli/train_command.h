@@ -10,14 +10,13 @@
 
 namespace graphdrl {
 
-// Trains as the arguments after `train` say; gives the exit status. `make_learner`: for the devices that the program
-// knows.
+// Trains as the arguments after `train` say; gives the exit status. `make_learner` knows the devices of the program.
 int run_train_command(const std::vector<std::string>& arguments, const MakePaperLearner& make_learner,
                       const MakePaperLearnerGroup& make_group = {});
 
-// Makes learners on the CPU. Asked for another device, the program becomes graphdrl-train, called with `arguments`,
-// which has LibTorch and stands beside it, installed or not: signals and the exit status are that program's from then
-// on. REQUIRES: nothing is written yet. The learner throws Error where graphdrl-train is not there.
+// Makes learners on the CPU. Asked for another device, it replaces the process by graphdrl-train with `arguments`: the
+// program beside this one that has LibTorch. Signals and the exit status are that program's from then on. REQUIRES:
+// nothing is written yet. Throws Error if graphdrl-train is missing.
 MakePaperLearner learner_or_torch_program(std::vector<std::string> arguments);
 
 // Catches SIGINT, SIGTERM and SIGHUP from now on. training_signal() gives the last one caught, 0 if none.

@@ -1,4 +1,4 @@
-// Plans as files, for whatever takes them further.
+// Plans as files, for other programs, and plans read back.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,7 +13,7 @@ namespace graphdrl {
 // The document that `graphdrl plan --json` prints.
 nlohmann::ordered_json plan_json(const PlanReport& report);
 
-// What has been spent at every node of the walk.
+// The cost so far at every node of the walk.
 std::vector<double> costs_so_far(const PlanReport& report);
 
 // Two or three lines: what it visits, what it costs, and the bound.
@@ -22,9 +22,9 @@ std::vector<std::string> plan_summary(const PlanReport& report);
 // The walk, a node a line below a header: node ids, with the labels beside them. read_plan() reads it.
 std::string format_walk(const World& world, std::span<const NodeId> walk);
 
-// Throws Error where no plan is written in a file with this ending: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
-// nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h); and where the format needs coordinates that
-// the world does not have.
+// Throws Error unless the file has one of these endings: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
+// nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h). Throws Error also if the format needs
+// coordinates and the world has none.
 void check_plan_file(const World& world, const std::string& file);
 
 // Writes a plan in the format of the file's ending. Throws Error.
@@ -43,7 +43,7 @@ PlanReport read_plan(const World& world, const std::string& file);
 // The same for a text; `file` is for error messages.
 PlanReport parse_plan(const World& world, const std::string& text, const std::string& file);
 
-// Throws Error, naming `file`, where the plan's walk costs more than the task's budget or ends elsewhere.
+// Throws Error, naming `file`, if the plan's walk costs more than the task's budget or does not end where it must.
 void check_walk(const PlanReport& report, const std::string& file);
 
 }  // namespace graphdrl

@@ -33,7 +33,7 @@ void check_time_limit(const PlanRequest& request) {
   }
 }
 
-// Null where the policy chooses step by step.
+// Null if the policy chooses step by step.
 std::unique_ptr<Planner> planner_of(const PlanRequest& request) {
   if (request.own_planner) return request.own_planner();
   return request.own_policy ? nullptr : make_planner(request.policy, request.seed);
@@ -52,7 +52,7 @@ int count_unreachable(const World& world, NodeId start) {
   return world.valid_count() - reached;
 }
 
-// Nothing is believed that cannot be walked.
+// Walks the plan through an episode before it is believed.
 void check_plan(const World& world, const Task& task, const Plan& plan) {
   const End end = task.ends_anywhere() ? End::anywhere() : End::at(task.end);
   Episode episode(world, {.budget = task.budget, .end = end, .action_space = action_space_of(world)});

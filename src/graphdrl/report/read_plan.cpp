@@ -25,7 +25,7 @@ std::vector<NodeId> walk_of_json(const World& world, const nlohmann::json& docum
     throw Error({.what = "no walk", .expected = "an array, or one under the key \"walk\"", .where = file});
   std::vector<NodeId> nodes;
   for (const nlohmann::json& item : walk) {
-    // A number is a node id, a text is what users call it.
+    // A number is a node id; a text names a node as users do.
     const std::string name = item.is_number_integer() ? fmt::format("#{}", item.dump())
                              : item.is_string()       ? item.get<std::string>()
                                                       : "";
@@ -85,7 +85,7 @@ std::vector<NodeId> walk_of_lines(const World& world, const std::string& text, c
   return nodes;
 }
 
-// Throws Error where a step of the walk follows no edge.
+// Throws Error if a step of the walk follows no edge.
 void check_steps(const World& world, const std::vector<NodeId>& walk, const std::string& file) {
   const auto name = [&](NodeId node) {
     return world.labels().empty() ? fmt::format("node {}", node) : in_quotes(world.labels()[node]);
@@ -105,7 +105,7 @@ std::optional<double> number_at(const nlohmann::json& document, const char* key)
   return item->get<double>();
 }
 
-// What a document says beside the walk.
+// Reads what a document says besides the walk.
 void read_claims(const World& world, const nlohmann::json& document, const std::string& file, PlanReport& report) {
   if (const auto policy = document.find("policy"); policy != document.end() && policy->is_string()) {
     report.policy = *policy;
