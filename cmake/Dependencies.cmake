@@ -1,4 +1,4 @@
-# Everything GraphDRL stands on, from Debian 12's packages. What each is for: README.md.
+# Everything GraphDRL stands on, from Debian 12's packages. What each is for: docs/dependencies.md.
 function(require found what debian)
   if(NOT found) # empty, FALSE or NOTFOUND
     message(FATAL_ERROR "${what} not found: install Debian's ${debian}; scripts/setup installs all that is needed")

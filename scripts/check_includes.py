@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Fails on an include against ARCHITECTURE.md's order of the modules, and on LibTorch in other modules than its own."""
+"""Fails on an include against ARCHITECTURE.md's order of the modules, on a row there that names other files than there
+are, and on LibTorch in other modules than its own."""
 
 import pathlib
 import re
@@ -7,18 +8,33 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "src" / "graphdrl"
-MODULE_LINE = re.compile(r"^\| `([\w/]+)/` \|", re.MULTILINE)
+MODULE = re.compile(r"^### `([\w/]+)/`.*\n((?:(?!^#).*\n)*)", re.MULTILINE)
+ROW = re.compile(r"^\| (`.+?`) \|", re.MULTILINE)
 OWN_INCLUDE = re.compile(r'^#include "graphdrl/([\w/]+)/[^/]+"')
 TORCH_INCLUDE = re.compile(r"^#include [<\"](torch|ATen|c10)/")
 
 
+def row_problems(module: str, text: str, files: set[str]) -> list[str]:
+    """A row names headers or sources; `NAME` stands for any, `bound` for bound_without_clp too."""
+    named = {name for row in ROW.findall(text) for name in re.findall(r"`(\w+)`", row)}
+    mentioned = tuple(f"{name}_" for name in re.findall(r"`(\w+)`", text))
+    problems = [f"ARCHITECTURE.md: {module}/ has no {name}" for name in sorted(named - files - {"NAME"})]
+    if "NAME" not in named:
+        lacking = sorted(stem for stem in files if not f"{stem}_".startswith(mentioned))
+        problems += [f"ARCHITECTURE.md: no row of {module}/ names {stem}" for stem in lacking]
+    return problems
+
+
 def main() -> int:
-    modules = MODULE_LINE.findall((ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8"))
+    sections = dict(MODULE.findall((ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")))
+    modules = list(sections)
     paths = sorted(path for path in SOURCES.rglob("*") if path.suffix in {".h", ".cpp"})
     folders = {path.parent.relative_to(SOURCES).as_posix() for path in paths}
     problems = []
     if set(modules) != folders:
         problems.append(f"ARCHITECTURE.md lists {sorted(modules)}, src/graphdrl/ holds {sorted(folders)}")
+    for module, text in sections.items():
+        problems += row_problems(module, text, {path.stem for path in paths if path.parent == SOURCES / module})
     torch_module = "train/torch" if "train/torch" in folders else "train"
     rank = {module: index for index, module in enumerate(modules)}
     for path in paths:

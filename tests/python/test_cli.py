@@ -123,7 +123,7 @@ def test_maps_info_and_show(run, tmp_path):
     }  # fmt: skip
     process = run("graphdrl", "maps", "show", "paper:a", "--walk", "0,1,2", "--svg", tmp_path / "a.svg")
     assert process.returncode == 0
-    assert process.stdout.splitlines()[1:] == ["0 1 2 # .", ". # # # .", ". # . . .", ". # . . .", ". . . . ."]
+    assert process.stdout.splitlines()[1:6] == ["S → E # .", ". # # # .", ". # . . .", ". # . . .", ". . . . ."]
     assert (tmp_path / "a.svg").read_text().count("<circle") == 25 + 2 + 1  # the start, the legend
     assert run("graphdrl", "maps", "show", "paper:a").stdout == "paper:a: 19 valid nodes\n" + MAP_A
 

@@ -7,10 +7,13 @@
 namespace graphdrl {
 namespace {
 
-TEST(DrawMapText, ShowsTheMapAndTheStepsOfFirstVisits) {
-  const World world = grid_world("...\n.#.\n");
-  EXPECT_EQ(draw_map_text(world, {}), "...\n.#.\n");
-  EXPECT_EQ(draw_map_text(world, std::vector<NodeId>{1, 0, 1, 2}), "1 0 3\n. # .\n");
+TEST(DrawMapText, ShowsTheMap) {
+  EXPECT_EQ(draw_map_text(grid_world("...\n.#.\n")), "...\n.#.\n");
+}
+
+TEST(FirstVisits, AreTheStepsOfTheWalk) {
+  EXPECT_EQ(first_visits(grid_world("...\n.#.\n"), std::vector<NodeId>{1, 0, 1, 2}),
+            (std::vector<int>{1, 0, 3, -1, -1, -1}));
 }
 
 }  // namespace

@@ -92,6 +92,7 @@ TEST_F(PlanFiles, WalksAreReadBack) {
     return read_plan(world, (folder_ / "walk").string()).plan.walk;
   };
   EXPECT_THAT(read("\"a, \"\"b\"\"\"\n7\n<c>\n"), ElementsAre(0, 1, 2));
+  EXPECT_THAT(read(format_walk(world, std::vector<NodeId>{0, 1, 2})), ElementsAre(0, 1, 2));
   EXPECT_THAT(read("cost,label\n1,7\n2,<c>\n"), ElementsAre(1, 2));
   EXPECT_THAT(read("[0, \"7\", 2]"), ElementsAre(0, 1, 2));
   EXPECT_THAT(read("# comment\n#0\n7\n"), ElementsAre(1));
@@ -101,6 +102,18 @@ TEST_F(PlanFiles, WalksAreReadBack) {
   EXPECT_THAT(error_of([&] { read("{\"walk\": 3}"); }), HasSubstr("no walk"));
   EXPECT_THAT(error_of([&] { read("[1.5]"); }), HasSubstr("not a node"));
   EXPECT_THAT(error_of([&] { read("[9]"); }), HasSubstr("step 0 outside the map"));
+}
+
+TEST_F(PlanFiles, AWalkOnOneLineIsReadWhole) {
+  const World world = grid_world("...\n...\n");
+  const auto read = [&](const std::string& text) { return parse_plan(world, text, "walk").plan.walk; };
+  EXPECT_THAT(read("0 1 2\n"), ElementsAre(0, 1, 2));
+  EXPECT_THAT(read("# by hand\n0, 1, 2\n\n"), ElementsAre(0, 1, 2));
+  EXPECT_THAT(read("node visited\n0 1\n"), ElementsAre(0));
+  EXPECT_THAT(read("0,5\n1,9\n"), ElementsAre(0, 1));
+  EXPECT_EQ(format_walk(world, std::vector<NodeId>{0, 1}), "node\n0\n1\n");
+  // Either of two walks, or one and something beside it.
+  EXPECT_THAT(error_of([&] { read("0 1 2\n1 2 5\n"); }), HasSubstr("walk:1: several words a line"));
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ int count_unreachable(const World& world, NodeId start) {
   return world.valid_count() - reached;
 }
 
-// Nothing is believed that cannot be walked.
+// Walks the plan through an episode before it is believed.
 void check_plan(const World& world, const Task& task, const Plan& plan) {
   Episode episode(world, task, {.action_space = action_space_of(world)});
   follow_walk(episode, plan.walk);
@@ -98,7 +98,13 @@ std::vector<std::string> plan_summary(const PlanReport& report) {
     lines.push_back(fmt::format("optimal: no walk {}", what));
   } else {
     const std::string most = world.has_prizes() ? decimal(plan.bound) : fmt::format("{} nodes", report.max_visited());
-    lines.push_back(fmt::format("no walk {} than {}, {:.1f} %", what, most, world.percent_of_all(plan.bound)));
+    const double bound_percent = world.percent_of_all(plan.bound);
+    lines.push_back(fmt::format("no walk {} than {}, {:.1f} %: the gap is {:.1f} points", what, most, bound_percent,
+                                bound_percent - world.percent_of_all(plan.prize)));
+  }
+  if (report.unreachable > 0) {
+    lines.push_back(fmt::format("{} node{} cannot be reached from the start", report.unreachable,
+                                report.unreachable == 1 ? "" : "s"));
   }
   return lines;
 }

@@ -63,7 +63,7 @@ double learning_step_ms() {
 Json run_bench() {
   std::uint64_t signature = 0;
   std::array<std::vector<double>, kThreadCounts.size()> steps_per_s;
-  for (int round = 0; round < kRounds; ++round) {  // alternating, so that a change of the machine's speed meets all
+  for (int round = 0; round < kRounds; ++round) {  // alternating, so that a change of the machine's speed affects all
     for (std::size_t i = 0; i < kThreadCounts.size(); ++i) {
       set_threads(kThreadCounts[i]);
       const EnvironmentBench result = bench_environment();

@@ -61,8 +61,8 @@ void add_check_command(CLI::App& app) {
   command
       ->add_option(
           "walk", options->walk,
-          "The file: a node a line (CSV with a column node, id or label, or the first field), or JSON as `plan` "
-          "writes it")
+          "The file: a node a line (CSV with a column node, id or label, or the first field), all nodes on one line, "
+          "or JSON as `plan` writes it")
       ->required()
       ->type_name("WALK");
   command

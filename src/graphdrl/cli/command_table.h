@@ -10,7 +10,7 @@ namespace graphdrl {
 struct OptionEntry {
   std::vector<std::string> names;    // "-o", "--out"; empty for a positional
   std::string value;                 // what a value is called: "FILE"; empty for a flag
-  std::vector<std::string> choices;  // all that a value may be, where they are few
+  std::vector<std::string> choices;  // all values that are allowed, if they are few
   std::string help;
   std::string group;
   bool required = false;
@@ -27,7 +27,7 @@ struct CommandEntry {
   std::vector<CommandEntry> commands;
 };
 
-// What the program parses, and `train` besides, which parses its options itself.
+// The parser of the program, with the options of `train`, which parses its own.
 CommandEntry command_table(const CLI::App& program);
 
 // The program, then every command, each before its own.

@@ -10,7 +10,7 @@
 namespace graphdrl {
 namespace {
 
-// A folder `share` with everything in its place.
+// Writes a folder such as /usr/share: completions and manual pages in their places.
 void install(const CommandEntry& program, const std::filesystem::path& share) {
   const auto write = [&](const std::filesystem::path& path, const std::string& text) {
     prepare_folder((share / path).parent_path());

@@ -28,7 +28,7 @@ struct InspectedStep {
   NodeId position;
   std::vector<float> features;           // [N, F]
   std::array<float, kActionCount> q;     // raw
-  std::array<bool, kActionCount> legal;  // false where the move would be blocked
+  std::array<bool, kActionCount> legal;  // false if the move would be blocked
 };
 
 std::vector<InspectedStep> inspect_walk(PaperPolicy& policy, const InspectOptions& options) {
@@ -66,7 +66,7 @@ struct ExplorerStep {
   std::vector<FirstVisit> visits;
   ExplorerBatch seen;            // this state alone
   std::vector<float> shortfall;  // [C]
-  std::size_t choice = 0;        // the place of the first visit it makes
+  std::size_t choice = 0;        // the index of the first visit that it makes
 };
 
 std::vector<ExplorerStep> inspect_walk(ExplorerScorer& scorer, const World& world, const InspectOptions& options) {

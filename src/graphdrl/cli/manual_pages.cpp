@@ -9,7 +9,7 @@
 namespace graphdrl {
 namespace {
 
-// For roff: a hyphen that is one, and no line that looks like a request.
+// Escapes text for roff: keeps hyphens, and lets no line look like a request.
 std::string roff(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -22,11 +22,12 @@
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/map_drawing.h"
 #include "graphdrl/report/picture.h"
+#include "graphdrl/report/terminal_picture.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr double kMostSpent = 1e300;  // walks that are shown cost what they cost
+constexpr double kMostSpent = 1e300;  // no limit for walks that are shown
 constexpr double kBudgetStep = 1e-6;  // of a budget that visits all, where costs are no whole numbers
 
 struct MapsOptions {
@@ -173,10 +174,10 @@ void show_map(const MapsOptions& options) {
       follow_walk(episode, options.walk);
       title += fmt::format(", {} visited in {} steps", episode.visited_count(), options.walk.size() - 1);
     }
-    const bool numbers = world.has_cells() && !options.walk.empty();
-    text +=
-        fmt::format("{}{}{}\n", text.empty() ? "" : "\n", title, numbers ? "; numbers are steps of first visits" : "");
-    if (world.has_cells()) text += draw_map_text(world, options.walk);
+    text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title);
+    if (world.has_cells()) {
+      text += options.walk.empty() ? draw_map_text(world) : draw_walk(world, options.walk, screen_of(stdout));
+    }
     if (options.svg.empty() && options.png.empty()) continue;
     const Picture picture(world, options.walk, title, {});
     if (!options.svg.empty()) write_file(options.svg, picture.svg());

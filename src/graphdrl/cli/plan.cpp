@@ -1,6 +1,6 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <memory>
@@ -9,17 +9,16 @@
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/io/text.h"
 #include "graphdrl/planners/registry.h"
-#include "graphdrl/report/map_drawing.h"
 #include "graphdrl/report/plan_files.h"
 #include "graphdrl/report/progress.h"
+#include "graphdrl/report/terminal_picture.h"
 
 namespace graphdrl {
 namespace {
 
 constexpr double kProgressAfterS = 1;
-constexpr std::size_t kLongestWalkPrinted = 2000;  // nodes
-constexpr std::size_t kWidestDrawing = 240;        // characters
 
 struct PlanOptions {
   std::string map;
@@ -28,6 +27,7 @@ struct PlanOptions {
   PlanRequest request;
   std::optional<double> time_limit_s;
   std::vector<std::string> out;
+  bool walk = false;
   bool json = false;
 };
 
@@ -58,45 +58,26 @@ std::string name_of(const World& world, NodeId node) {
   return fmt::format("node {} (row {}, column {})", node, cell.row, cell.col);
 }
 
-std::string format_bound(const World& world, const PlanReport& answer) {
-  const Plan& plan = answer.plan;
-  const char* const what = world.has_prizes() ? "is worth more" : "visits more";
-  if (plan.optimal) return fmt::format("optimal  no walk {}\n", what);
-  const std::string most = world.has_prizes() ? decimal(plan.bound) : fmt::format("{} nodes", answer.max_visited());
-  return fmt::format("bound    no walk {} than {}, {:.1f} %: the gap is {:.1f} points\n", what, most,
-                     world.percent_of_all(plan.bound),
-                     world.percent_of_all(plan.bound) - world.percent_of_all(plan.prize));
+std::string as_comments(std::string_view text) {
+  std::string commented;
+  for (Lines lines(text); lines.next();) commented += fmt::format("# {}\n", lines.line());
+  return commented;
 }
 
-std::string format_plan(const PlanReport& answer) {
+std::string format_plan(const PlanReport& answer, const PlanOptions& options) {
   const World& world = answer.world;
-  const Task& task = answer.task;
-  const Plan& plan = answer.plan;
-  std::string text = fmt::format("{}, {} from {}", world.name(), answer.policy, name_of(world, plan.walk.front()));
-  if (!task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, task.end()));
-  text += fmt::format(", budget {}\n", decimal(task.budget()));
-  text += fmt::format("visited  {} of {} nodes, {:.1f} %, for {}\n", plan.visited, world.valid_count(),
-                      100.0 * plan.visited / world.valid_count(), decimal(plan.cost));
-  if (world.has_prizes()) {
-    text += fmt::format("prize    {} of {}, {:.1f} %\n", decimal(plan.prize), decimal(world.total_prize()),
-                        world.percent_of_all(plan.prize));
-  }
-  text += format_bound(world, answer);
-  if (answer.unreachable > 0) {
-    text += fmt::format("         {} node{} cannot be reached from there\n", answer.unreachable,
-                        answer.unreachable == 1 ? "" : "s");
-  }
-  std::vector<std::string> names;
-  if (plan.walk.size() > kLongestWalkPrinted) {
-    text += fmt::format("walk     {} steps; --out FILE or --json gives them\n", plan.walk.size() - 1);
-    return text;
-  }
-  for (const NodeId node : plan.walk) {
-    names.push_back(world.labels().empty() ? std::to_string(node) : escaped(world.labels()[node]));
-  }
-  text += fmt::format("walk     {}\n", fmt::join(names, " "));
-  const std::size_t digits = std::to_string(plan.walk.size()).size() + 1;
-  if (world.has_cells() && world.map()->cols * digits <= kWidestDrawing) text += "\n" + draw_map_text(world, plan.walk);
+  const std::vector<NodeId>& walk = answer.plan.walk;
+  std::string text = fmt::format("{}, {} from {}", world.name(), answer.policy, name_of(world, walk.front()));
+  if (!answer.task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, answer.task.end()));
+  for (const std::string& line : plan_summary(answer)) text += '\n' + line;
+  text += fmt::format("\nwalk of {} steps", walk.size() - 1);
+  if (options.walk) return as_comments(text + '\n') + format_walk(world, walk);
+  text += fmt::format(" to {}; --walk prints them\n", name_of(world, walk.back()));
+  if (!world.has_cells()) return text;
+  // The picture and the text above it fit the screen, with a line for the prompt.
+  Screen screen = screen_of(stdout);
+  screen.lines -= static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 2;
+  text += '\n' + draw_walk(world, walk, screen);
   return text;
 }
 
@@ -131,7 +112,7 @@ void plan(const PlanOptions& options) {
   if (options.json) {
     print_json(plan_json(answer));
   } else {
-    print_text(format_plan(answer));
+    print_text(format_plan(answer, options));
   }
   if (plan_signal != 0) throw CLI::RuntimeError(128 + plan_signal);
 }
@@ -182,7 +163,9 @@ void add_plan_command(CLI::App& app) {
       ->check(not_empty())
       ->type_name("FILE");
   add_seed_option(*command, options->request.seed, "For search and for random policies");
-  command->add_flag("--json", options->json, "Print one JSON document");
+  auto* const json = command->add_flag("--json", options->json, "Print one JSON document");
+  command->add_flag("--walk", options->walk, "Print the walk instead of a picture, a node a line, as `check` reads it")
+      ->excludes(json);
   add_map_options(*command, options->reading);
   add_threads_option(*command);
   command->callback([options] { plan(*options); });

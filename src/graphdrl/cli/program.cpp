@@ -14,7 +14,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::size_t kLongestMessage = 800;  // characters: CLI11's repeat a bad line however long it is
+constexpr std::size_t kLongestMessage = 800;  // characters: messages of CLI11 repeat a bad line, long or short
 constexpr int kJsonIndent = 2;
 
 int complain(const CLI::App& app, std::string_view message, int status) {

@@ -16,8 +16,8 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitOurFault = 1;
 inline constexpr int kExitBadInput = 2;
 
-// Parses the arguments, which runs the chosen command's callback, and turns whatever is thrown into one line on
-// standard error and an exit status.
+// Parses the arguments, which runs the chosen command's callback. Turns any exception into one line on standard error
+// and an exit status.
 int run_program(CLI::App& app, int argc, char** argv);
 
 // Adds --threads and has parallel_for use that many; the default is one per processor.
@@ -29,22 +29,22 @@ void add_map_options(CLI::App& command, MapOptions& options);
 // Adds --seed, a whole number from 0 to 2^64 - 1; `help` says what it is for.
 CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help);
 
-// Refuses what is no whole number from 0 to 2^64 - 1.
+// Accepts whole numbers from 0 to 2^64 - 1.
 CLI::Validator whole_number();
 
-// Refuses an empty text, such as that of a variable nobody set.
+// Refuses an empty text, such as that of an unset variable.
 CLI::Validator not_empty();
 
-// A document over several lines, but arrays of numbers, and arrays of such, on one line each.
+// A document over several lines. Arrays of numbers, and arrays of such arrays, take one line each.
 std::string format_json(const Json& json);
 
 // One JSON document on standard output.
 void print_json(const Json& json);
 
-// Text on standard error; where nobody listens, it is lost.
+// Text on standard error; lost if that is closed.
 void print_diagnostic(const std::string& text);
 
-// Text on standard output. Throws Error where it cannot be written (a closed pipe, a full disk).
+// Text on standard output. Throws Error if it cannot be written (a closed pipe, a full disk).
 void print_text(const std::string& text);
 
 // A value or null.

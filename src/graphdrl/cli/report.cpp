@@ -29,7 +29,7 @@ struct ReportOptions {
   int port = 8000;
 };
 
-// What a page calls its runs and evaluations: the last part of the path, or all of it where that is taken.
+// What a page calls its runs and evaluations: the last part of the path, or the whole path if that name is taken.
 class Names {
  public:
   std::string name(const std::string& path) {
@@ -43,7 +43,7 @@ class Names {
   std::set<std::string> taken_;
 };
 
-// Evaluations are told from plans by what they hold.
+// Evaluations and plans are told apart by their content.
 std::optional<nlohmann::json> read_evaluation(const std::string& file) {
   const std::string text = read_file(file);
   if (!text.starts_with('{')) return std::nullopt;
@@ -74,16 +74,16 @@ ReportPage make_page(const ReportOptions& options, const std::optional<World>& w
 // Serves the page to this machine alone, until a signal ends the program.
 void serve(const ReportOptions& options, const std::optional<World>& world) {
   httplib::Server server;
-  // Its own options would let two programs share a port.
+  // The library's own socket options would let two programs share a port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   });
-  // Bad input shall be found now, not by whoever opens the page.
+  // Reads the input now, so that errors show before a page is opened.
   make_page(options, world);
   const auto answer = [&](auto content_of, const char* type) {
     return [&options, &world, content_of, type](const httplib::Request& request, httplib::Response& response) {
-      // A page of another site, whose name leads here, must not read this one.
+      // A page of another site whose name resolves to this machine must not read this one.
       const std::string host = request.get_header_value("Host");
       if (!host.starts_with("127.0.0.1:") && !host.starts_with("localhost:")) {
         response.status = 403;

@@ -69,7 +69,7 @@ void write_figure(const std::filesystem::path& path, const std::vector<FinishedR
   write_file(path, canvas->finish());
 }
 
-// Puts the table between its marks in a text. Throws Error where they are not there.
+// Puts the table between its marks in a text. Throws Error if the marks are missing.
 void write_into(const std::filesystem::path& path, const std::string& table) {
   const std::string text = read_file(path);
   const std::size_t begin = text.find(kBegin);

@@ -25,7 +25,7 @@ std::string shell_quoted(std::string_view text) {
   return out + "'";
 }
 
-// Of zsh's _arguments: brackets and colons have a meaning there.
+// Escapes brackets and colons, which mean something to zsh's _arguments.
 std::string zsh_text(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -131,7 +131,7 @@ std::string zsh_completion(const CommandEntry& program) {
 std::string fish_completion(const CommandEntry& program) {
   std::string text = "# Completion of graphdrl for fish, made by `graphdrl completion fish`.\n";
   for_each_command(program, [&](const CommandEntry& entry) {
-    // A command of a command is known by both words.
+    // A command such as `maps info` is known by both words.
     std::string seen;
     for (std::size_t begin = 0; begin < entry.name.size();) {
       const std::size_t end = std::min(entry.name.find(' ', begin), entry.name.size());

@@ -73,14 +73,14 @@ class ConfigReader : public CLI::ConfigTOML {
 };
 
 struct TrainCommand {
-  TrainOptions given;  // by flags and config files; else the default of the explorer, or of the paper's own options
+  TrainOptions given;  // by flags and config files; else defaults: of the explorer, and of the paper's own options
   std::string seeds;
   std::string out;
   std::string resume;
   bool json = false;
 };
 
-// The flags of the options that a training has, and whose they are.
+// The flags of a training's options, and the presets that have them.
 class OptionFlags {
  public:
   OptionFlags(CLI::App& app, TrainOptions& given) : given_(given) {
@@ -88,8 +88,8 @@ class OptionFlags {
     preset_ = app.get_option("--preset");
   }
 
-  // The options as given, with the defaults of their preset. An option that only the preset paper has chooses that
-  // preset, where none is named. Throws Error on options of another one.
+  // The options as given, with the defaults of their preset. If no preset is named, an option that only `paper` has
+  // chooses `paper`. Throws Error on options of another preset.
   TrainOptions resolve() const {
     const bool paper_by_option = preset_->count() == 0 && first_given(of_paper_) != nullptr;
     TrainOptions options = default_options(paper_by_option ? kPaperPreset : given_.preset);
@@ -213,7 +213,7 @@ void train(SeedRuns& seeds, const LearnerSource& learners, bool json) {
                          reports.front()["run"].get<std::string>(), reports.back()["run"].get<std::string>()));
 }
 
-// Throws Error where an option of a new run stands beside --resume.
+// Throws Error if an option of a new run is given beside --resume.
 void refuse_beside_resume(const std::vector<CLI::Option*>& options, const std::string& run) {
   for (const CLI::Option* const option : options) {
     if (option->count() == 0) continue;

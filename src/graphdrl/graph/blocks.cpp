@@ -5,7 +5,7 @@
 namespace graphdrl {
 namespace {
 
-// The neighbours of a node, whichever way edges lead: where they lead to, then where they come from.
+// The neighbours of a node in both directions: where edges lead to, then where they come from.
 class BothWays {
  public:
   BothWays(const Graph& graph, const Graph& into) : graph_(graph), into_(into) {}
@@ -28,7 +28,7 @@ Blocks::Blocks(const Graph& graph, const Graph& into, NodeId root, const std::ve
   struct Frame {
     NodeId node;
     NodeId parent;
-    std::size_t next = 0;  // place among its neighbours
+    std::size_t next = 0;  // index among its neighbours
   };
   const BothWays neighbours(graph, into);
   std::vector<int> depth(graph.node_count(), -1);

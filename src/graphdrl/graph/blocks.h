@@ -8,11 +8,12 @@
 
 namespace graphdrl {
 
-// The blocks of a graph, whichever way edges lead, seen from a root node. Two nodes share a block where no single node
-// parts them; a block hangs from the one of its nodes that is nearest to the root.
+// The blocks of a graph, seen from a root node; directions of edges do not count. Two nodes share a block if no single
+// other node parts them. A block hangs from its node nearest to the root.
 class Blocks {
  public:
-  // into: the graph turned round. in_reach: [N], the nodes to look at, the root among them and connected to it.
+  // into: the graph with its edges turned round. in_reach: [N], the nodes to look at, all connected to the root, which
+  // is one of them.
   // Depth-first search [Hopcroft and Tarjan 1973]. Cost: O(nodes + edges).
   Blocks(const Graph& graph, const Graph& into, NodeId root, const std::vector<bool>& in_reach);
 
@@ -22,7 +23,7 @@ class Blocks {
   std::span<const NodeId> members(int block) const {  // without the root
     return {members_.data() + offsets_[block], members_.data() + offsets_[block + 1]};
   }
-  std::int64_t first_member(int block) const { return offsets_[block]; }  // its place among those of all blocks
+  std::int64_t first_member(int block) const { return offsets_[block]; }  // its index among the members of all blocks
 
  private:
   std::vector<NodeId> roots_;

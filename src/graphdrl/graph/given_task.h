@@ -1,4 +1,4 @@
-// What a file says of the walk asked for, where it does.
+// What a map file says of the walk: its budget, its start and its end, if it says any of them.
 #pragma once
 
 #include <optional>

@@ -91,7 +91,7 @@ Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind
     });
     NodeId last = kNoNode;
     for (const Arc& arc : list) {
-      if (arc.to == last) continue;  // a parallel edge, dearer or as dear
+      if (arc.to == last) continue;  // a parallel edge that is no cheaper
       last = arc.to;
       graph.neighbours_.push_back(arc.to);
       if (!unit_costs) graph.costs_.push_back(arc.cost);

@@ -30,7 +30,7 @@ class Graph {
  public:
   Graph() = default;
 
-  // Neighbours in ascending order. A loop is left out, for a walk never gains by it; of parallel edges the cheapest
+  // Neighbours in ascending order. Leaves out loops, since a walk never gains by them. Of parallel edges the cheapest
   // stays. Throws Error on an edge out of range and on a cost that is negative or not finite. Cost: linear but for
   // sorting each node's neighbours. REQUIRES: node_count >= 0.
   static Graph from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind = EdgeKind::kUndirected);
@@ -38,29 +38,29 @@ class Graph {
   // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down; every edge costs 1.
   // REQUIRES: rows * cols fits a NodeId.
   static Graph grid(int rows, int cols);
-  // The edges between free cells of a map. Where it has diagonals, these neighbours follow, clockwise from left-up.
+  // The edges between free cells of a map. Diagonal neighbours, if the map has them, follow clockwise from left-up.
   static Graph grid(const GridMap& map);
 
-  // An edge between any two nodes, undirected. Lists of neighbours are in ascending order from the node on, and begin
-  // again after the last one. Memory: O(nodes), and what the costs need. Cost: a look at every pair. Where costs are
-  // not metric, a way through other nodes may be cheaper than the straight one [NearestFirst::run_cheapest()].
+  // An undirected edge between any two nodes. A node's neighbours are in ascending order: first those after the node,
+  // then those before it. Memory: O(nodes), and what the costs need. Cost: a look at every pair. If costs are not
+  // metric, a way through other nodes may be cheaper than the straight one [NearestFirst::run_cheapest()].
   static Graph complete(NodeId node_count, std::shared_ptr<const PairCosts> costs);
   bool is_complete() const { return pair_costs_ != nullptr; }
-  // Whether no cheaper way is missed where a complete graph's edges are only taken straight; true of other graphs.
+  // Whether straight edges are the cheapest ways in a complete graph; true of other graphs.
   bool straight_ways_suffice() const { return !is_complete() || pair_costs_->metric(); }
 
-  // The same nodes, without the edges that touch a dropped one. REQUIRES: dropped has a value per node.
+  // The same nodes without the edges of dropped ones. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;
 
-  // The given nodes, numbered in the order given, and the edges among them. REQUIRES: none is given twice. number:
-  // memory for the numbering, [N], kNoNode everywhere before and after.
+  // The given nodes, numbered in the order given, and the edges among them. number: [N], scratch memory, kNoNode
+  // everywhere before and after. REQUIRES: no node is given twice.
   Graph induced(std::span<const NodeId> nodes, std::vector<NodeId>& number) const;
 
   // Undirected, every edge of cost 1. offsets: [N + 1], where each node's neighbours begin, and the end. REQUIRES: each
-  // edge stands in both lists, once.
+  // edge stands once in the list of each of its two nodes.
   static Graph from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> neighbours);
 
-  // The same graph with every edge turned round; an undirected graph is its own.
+  // The same graph with every edge turned round. An undirected graph stays as it is.
   Graph reversed() const;
 
   NodeId node_count() const { return static_cast<NodeId>(offsets_.size()) - 1; }
@@ -77,16 +77,16 @@ class Graph {
   }
   int degree(NodeId node) const { return static_cast<int>(offsets_[node + 1] + overlap_ - offsets_[node]); }
 
-  // What it costs to go to the neighbour of this place in neighbours().
+  // The cost of going to neighbours(node)[i].
   double cost(NodeId node, int index) const {
     if (is_complete()) return pair_costs_->cost(node, neighbours_[offsets_[node] + index]);
     return costs_.empty() ? 1.0 : costs_[offsets_[node] + index];
   }
 
-  // The place of `next` in neighbours(node), or -1. Cost: O(log degree), or O(8) on a grid.
+  // The index of `next` in neighbours(node), or -1. Cost: O(log degree), or O(8) on a grid.
   int index_of(NodeId node, NodeId next) const;
 
-  // What edges cost; 1 where there are none. Known since the graph was made. The mean is 1 where all cost 0.
+  // Of the costs of all edges; computed when the graph is made. 1 without edges; the mean is 1 if all edges cost 0.
   double min_cost() const { return min_cost_; }
   double max_cost() const { return max_cost_; }
   double mean_cost() const { return mean_cost_; }
@@ -99,7 +99,7 @@ class Graph {
   std::vector<Edge> edges() const;
 
  private:
-  // Goes on with the next node: the neighbours of this one, and their costs where there are any, were just added.
+  // Goes on with the next node, after the neighbours of this one, and their costs if edges have costs, were added.
   void close_node() { offsets_.push_back(std::ssize(neighbours_)); }
   // Forgets costs that are all 1, else computes what is known of them.
   void settle_costs();

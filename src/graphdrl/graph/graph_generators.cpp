@@ -133,7 +133,7 @@ Graph erdos_renyi_graph(int nodes, double mean_degree, Rng& rng) {
 
 Graph barabasi_albert_graph(int nodes, int links, Rng& rng) {
   std::vector<Edge> edges;
-  std::vector<int> ends = {0};  // each node as often as it has edges, the first once more
+  std::vector<int> ends = {0};  // each node once per edge of it, the first node once more
   for (int node = 1; node < nodes; ++node) {
     std::vector<int> chosen;
     while (std::ssize(chosen) < std::min(links, node)) {

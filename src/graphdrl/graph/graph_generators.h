@@ -1,6 +1,6 @@
-// Random graphs, undirected, every edge of cost 1 unless said. The same random numbers give the same graph, which
+// Random graphs, undirected, every edge of cost 1 unless stated. The same random numbers give the same graph, which
 // frozen test sets need; lengths may differ in their last digit between C libraries. Time and memory grow with nodes
-// and edges unless said. REQUIRES everywhere: nodes >= 1.
+// and edges unless stated. REQUIRES everywhere: nodes >= 1.
 #pragma once
 
 #include "graphdrl/base/random.h"
@@ -19,12 +19,12 @@ Graph erdos_renyi_graph(int nodes, double mean_degree, Rng& rng);
 // Albert 1999]. REQUIRES: links >= 1.
 Graph barabasi_albert_graph(int nodes, int links, Rng& rng);
 
-// A ring whose nodes know the `reach` next ones on both sides, each edge led elsewhere with probability `rewired`
-// [Watts and Strogatz 1998]. REQUIRES: reach >= 1, 0 <= rewired <= 1.
+// A ring whose nodes are joined to the next `reach` ones on both sides; each edge is led elsewhere with probability
+// `rewired` [Watts and Strogatz 1998]. REQUIRES: reach >= 1, 0 <= rewired <= 1.
 Graph watts_strogatz_graph(int nodes, int reach, double rewired, Rng& rng);
 
-// Points drawn in a unit square, an edge where two are nearer than the radius that gives about this mean degree. The
-// edges' lengths, in mean edges, are their costs with `lengths_cost`.
+// Points drawn in a unit square, joined if they are nearer than the radius that gives about this mean degree. With
+// `lengths_cost` an edge costs its length, in mean lengths.
 Graph geometric_graph(int nodes, double mean_degree, bool lengths_cost, Rng& rng);
 
 // The largest connected part, its nodes renumbered in ascending order; of equally large ones that of the lowest node.
@@ -33,7 +33,7 @@ Graph largest_part(const Graph& graph);
 // The same edges, at costs drawn uniformly from the integers 1 to `most`.
 Graph with_random_costs(const Graph& graph, int most, Rng& rng);
 
-// The same edges, each leading one way only, drawn at random, with probability `share`, and else both ways.
+// The same edges. With probability `share` an edge leads one way only, in a random direction.
 Graph with_one_way_edges(const Graph& graph, double share, Rng& rng);
 
 }  // namespace graphdrl

@@ -10,9 +10,8 @@ namespace graphdrl {
 // Each cell an obstacle with probability `obstacles`; only the largest connected part stays free.
 GridMap random_obstacles_map(int rows, int cols, double obstacles, Rng& rng);
 
-// A perfect maze, corridors one cell wide: rooms on the cells of even row and column, exactly one way between any two;
-// then each inner wall cell between two rooms that is left opens with probability `loops`. REQUIRES: rows and cols are
-// odd.
+// A perfect maze, corridors one cell wide: rooms are the cells of even row and column, with exactly one way between any
+// two. Then each wall cell left between two rooms opens with probability `loops`. REQUIRES: rows and cols are odd.
 GridMap maze_map(int rows, int cols, double loops, Rng& rng);
 
 // As maze_map without loops, then each room that is a dead end is opened to another neighbouring room with probability
@@ -24,13 +23,13 @@ GridMap braided_maze_map(int rows, int cols, double braid, Rng& rng);
 // REQUIRES: max_room, rows, cols >= 2.
 GridMap rooms_map(int rows, int cols, int max_room, Rng& rng);
 
-// Caves: each cell rock with probability `rock`, then four times over what most cells around and on it are [Johnson,
-// Yannakakis and Togelius 2010]; only the largest connected part stays free, which may be none.
+// Caves: each cell is rock with probability `rock`; then, four times, each becomes what most of it and its neighbours
+// are [Johnson, Yannakakis and Togelius 2010]. Only the largest connected part stays free; it may be empty.
 GridMap caves_map(int rows, int cols, double rock, Rng& rng);
 
-// A house: walls split it into rooms of at most max_room cells a side, each wall with a door or two; then furniture of
-// up to 2 by 3 cells is put into the rooms until a share `furniture` of the floor is taken, or no place is found for
-// more. Only the largest connected part stays free. REQUIRES: max_room >= 2.
+// A house: walls with a door or two split it into rooms of at most max_room cells a side. Then furniture of up to 2 by
+// 3 cells is put into the rooms until it takes a share `furniture` of the floor, or no more fits. Only the largest
+// connected part stays free. REQUIRES: max_room >= 2.
 GridMap house_map(int rows, int cols, int max_room, double furniture, Rng& rng);
 
 // Streets of 1 to max_street cells between blocks of houses of at most max_block cells a side; a share `squares` of the

@@ -27,7 +27,7 @@ inline constexpr std::array<std::string_view, 4> kDirectionNames = {"left", "up"
 struct GridFrame {
   double cell_size = 1;  // a side, in `unit`
   Point origin = {};     // the lower left corner of the lower left cell
-  double yaw = 0;        // radians that the grid is turned by about its origin, counter-clockwise
+  double yaw = 0;        // radians, counter-clockwise: how far the grid is turned about its origin
   std::string unit;
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // of sides of cells
 
-// How many cells to either side of its column a blocked cell reaches in a row `rows` away; -1 where none.
+// How many cells to either side of its column a blocked cell reaches in a row `rows` away; -1 if it does not reach it.
 int reach_in_row(int rows, double radius) {
   // From the centre of a cell to the nearest point of another, `cols` columns and `rows` rows away.
   const auto gap = [](int cells) { return std::max(0.0, std::abs(cells) - 0.5); };
@@ -23,7 +23,8 @@ int reach_in_row(int rows, double radius) {
 GridMap with_obstacles_grown(GridMap map, double radius) {
   const std::vector<bool> before = map.blocked;
   const int most_rows = static_cast<int>(std::min<double>(std::ceil(radius + 0.5), map.rows));
-  std::vector<int> starts(static_cast<std::size_t>(map.cols) + 1);  // of blocked runs, less their ends
+  // Blocked runs that begin at a column, minus those that end there.
+  std::vector<int> starts(static_cast<std::size_t>(map.cols) + 1);
   std::vector<int> reaches;
   for (int rows = 0; rows <= most_rows; ++rows) reaches.push_back(reach_in_row(rows, radius));
   for (int row = 0; row < map.rows; ++row) {

@@ -11,9 +11,9 @@ namespace graphdrl {
 // border is no obstacle. Cost: O(cells · radius).
 GridMap with_obstacles_grown(GridMap map, double radius);
 
-// Larger cells, `scale` sides of a cell of the map each, from the lower left corner; they need not be whole cells of
-// it. One is free where all of the map's cells that it touches are. What is left of the map beyond the last whole one
-// is lost. Keeps the frame's corner. REQUIRES: scale >= 1 and at most the shorter side of the map.
+// Larger cells of `scale` times the side, from the lower left corner; `scale` need not be a whole number. A larger cell
+// is free if all cells of the map that it touches are. Cells beyond the last whole larger one are dropped. Keeps the
+// frame's corner. REQUIRES: scale >= 1 and at most the shorter side of the map.
 GridMap coarsened(const GridMap& map, double scale);
 
 // How many cells are free.

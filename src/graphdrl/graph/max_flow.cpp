@@ -21,7 +21,7 @@ void MaxFlow::set_capacity(int arc, double capacity, double back) {
 bool MaxFlow::find_path(int from, int to) {
   std::fill(came_by_.begin(), came_by_.end(), -1);
   queue_.assign(1, from);
-  scanned_ += std::ssize(came_by_) / 8;  // forgotten
+  scanned_ += std::ssize(came_by_) / 8;  // forgetting the marks
   for (std::size_t head = 0; head < queue_.size(); ++head) {
     scanned_ += std::ssize(arcs_at_[queue_[head]]);
     for (const int arc : arcs_at_[queue_[head]]) {

@@ -6,19 +6,19 @@
 
 namespace graphdrl {
 
-// A network of nodes and arcs with capacities. Flows go along shortest augmenting paths [Edmonds and Karp 1972], which
-// suits many small flows in one network: a run leaves the capacities as it found them.
+// A network of nodes and arcs with capacities. Flows go along shortest augmenting paths [Edmonds and Karp 1972]. Suits
+// many small flows in one network: a run leaves the capacities as it found them.
 class MaxFlow {
  public:
   explicit MaxFlow(int nodes) : arcs_at_(nodes), came_by_(nodes) {}
 
-  // An arc, and its capacity the other way. Its number.
+  // Adds an arc, with its capacity in the other direction too. Gives its number.
   int add_arc(int from, int to, double capacity, double back = 0);
   void set_capacity(int arc, double capacity, double back = 0);
 
-  // Whether so much can flow; what is less than kFlowRounding is none. Cost: a breadth-first search for every path.
+  // Whether that much can flow; less than kFlowRounding counts as nothing. Cost: a breadth-first search for each path.
   bool reaches(int from, int to, double needed);
-  // After a flow that does not reach: the nodes on the near side of a minimum cut, `from` among them.
+  // After a flow that falls short: the nodes on the near side of a minimum cut, `from` among them.
   const std::vector<int>& near_side() const { return queue_; }
   // Arcs looked at up to now.
   std::int64_t scanned() const { return scanned_; }

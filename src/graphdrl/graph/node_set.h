@@ -17,11 +17,11 @@ class NodeSet {
 
   bool contains(NodeId node) const { return (words_[node / 64] >> (node % 64) & 1) != 0; }
   void insert(NodeId node) { words_[node / 64] |= std::uint64_t{1} << (node % 64); }
-  // REQUIRES: both are of as many nodes.
+  // REQUIRES: both are over the same nodes.
   void insert_all(const NodeSet& other) {
     for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= other.words_[i];
   }
-  bool empty() const { return words_.empty(); }  // made for no node at all
+  bool empty() const { return words_.empty(); }  // a set over no nodes
   int count() const {
     int sum = 0;
     for (const std::uint64_t word : words_) sum += std::popcount(word);
@@ -36,8 +36,8 @@ class NodeSet {
   std::vector<std::uint64_t> words_;
 };
 
-// One of many sets that differ in few nodes: a set common to all, and a row of bits for the nodes that have a place in
-// it. A plain NodeSet is one without places. Refers to both; valid while they live.
+// One of many sets that differ in few nodes: a set common to all, and a row of bits for the nodes that may differ. A
+// plain NodeSet has no such nodes. Refers to both; valid while they live.
 class NodeSetView {
  public:
   NodeSetView(const NodeSet& set) : common_(&set) {}  // NOLINT(google-explicit-constructor): a set is a view of itself

@@ -7,7 +7,7 @@ namespace graphdrl {
 
 using NodeId = std::int32_t;
 
-// Symmetric, and finite and not negative. Immutable: any number of threads may ask.
+// Symmetric, finite, not negative. Immutable: any number of threads may ask.
 class PairCosts {
  public:
   virtual ~PairCosts() = default;

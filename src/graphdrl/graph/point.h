@@ -14,8 +14,8 @@ struct Point {
 
 // Of the nodes of a graph, y upward.
 struct Places {
-  std::vector<Point> points;  // [N]; empty where nobody says
-  std::string unit;           // "m"; "degrees" of longitude and latitude; empty where nobody says
+  std::vector<Point> points;  // [N]; empty if unknown
+  std::string unit;           // "m"; "degrees" of longitude and latitude; empty if unknown
 };
 
 }  // namespace graphdrl

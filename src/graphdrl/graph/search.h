@@ -13,14 +13,15 @@ namespace graphdrl {
 
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-// The ways from one node outwards, nearest first: breadth first where every edge costs 1, else by Dijkstra's algorithm;
-// straight ways alone in a complete graph.
-// Among equally near nodes the one met first comes first. Scratch memory of one thread: it serves one search after the
-// other, of any graphs. A search costs what it touches, not the size of the graph, but for growing to it once.
+// The ways from one node outwards, nearest first: breadth first if every edge costs 1, else by Dijkstra's algorithm; in
+// a complete graph straight edges only. Of equally near nodes the one met first comes first.
+//
+// Scratch memory of one thread, for one search after the other, of any graphs. A search costs what it touches; only
+// growing to the size of the graph, once, costs more.
 class NearestFirst {
  public:
-  // Calls visit(node, cost) for every node that can be had for at most max_cost, but `from`, nearest first; goes on
-  // from it where visit answers kThrough, stays out of it for good where kPast, ends everything at kEnd.
+  // Calls visit(node, cost) for every node but `from` within max_cost, nearest first. The answer decides: kThrough goes
+  // on from that node, kPast does not, kEnd ends the search.
   enum class Next { kThrough, kPast, kEnd };
   template <typename Visit>
   void run(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
@@ -34,7 +35,7 @@ class NearestFirst {
     }
   }
 
-  // The same, but of a complete graph run() takes the straight ways alone, and this the cheapest ones.
+  // The same, but in a complete graph by the cheapest ways; run() takes straight edges only.
   // Cost: O(N^2) there, unless costs are metric.
   template <typename Visit>
   void run_cheapest(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
@@ -43,7 +44,7 @@ class NearestFirst {
     run_dense(graph, from, max_cost, visit);
   }
 
-  // Appends the way to a node met in the last run: every node after its start, the node last.
+  // Appends the way to a node met in the last run: every node after the start, up to that node.
   void append_path_to(NodeId node, std::vector<NodeId>& walk) const {
     const auto first = std::ssize(walk);
     for (NodeId step = node; marks_[step].parent != step; step = marks_[step].parent) walk.push_back(step);
@@ -99,7 +100,7 @@ void NearestFirst::run_breadth_first(const Graph& graph, NodeId from, double max
   std::size_t head = 0;
   std::size_t size = 1;
   for (double cost = 0; head < size; cost += 1) {
-    // Nodes of one distance stand together: visit them all, meeting those of the next.
+    // Nodes of one distance stand together. Visiting them all meets those of the next distance.
     const bool last = cost + 1 > max_cost;
     for (const std::size_t end = size; head < end; ++head) {
       const NodeId here = queue[head];
@@ -200,7 +201,7 @@ void NearestFirst::run_dense(const Graph& graph, NodeId from, double max_cost, c
   }
 }
 
-// What it costs to get from each node to `goal`, by the cheapest way; kNoLimit where there is none. into: the graph
+// The cost of the cheapest way from each node to `goal`; kNoLimit if there is no way. into: the graph with its edges
 // turned round. Cost: as run_cheapest().
 std::vector<double> costs_to(const Graph& into, NodeId goal);
 

@@ -1,8 +1,8 @@
 // The gated graph convolution [Li et al. 2015; paper, eq. 7], forward and backward, with the semantics of PyTorch
 // Geometric's GatedGraphConv: the input is padded with zeros to the layer's width; then, for l = 0 … L-1,
-//   m_i = Σ_{j in N(i)} h_j Θ_l,   h = GRU(m, h),
-// and at the end, where the layer is asked to, ELU(h), while it is still in cache;
-// with one Θ_l per step, one GRU cell for all steps, biases also where a node has no neighbour.
+//   m_i = Σ_{j in N(i)} h_j Θ_l,   h = GRU(m, h).
+// Each step has its own Θ_l; all steps share one GRU cell. Biases are added to nodes without neighbours too. A layer
+// can apply ELU to the last h, while it is still in cache.
 //
 // How it is computed: a step is gates = (A h) P_l + h W_hhᵀ + b with P_l = Θ_l W_ihᵀ, folded once per set of weights,
 // so that a node costs 6 D² multiplications a step instead of 7 D². Nodes are cut into chunks of whole graphs that stay

@@ -291,10 +291,9 @@ void WalkRelaxation::separate_parity(const Clock& clock) {
   if (found_.empty()) separate_parity_cuts(clock);
 }
 
-// S from the minimum cuts between nodes, by how far values are from whole numbers: those
-// of a cut tree, which hold a violated row where there is one without ends [Padberg and Rao 1982; Letchford, Reinelt
-// and Theis 2008]. The cuts are those of an equivalent flow tree
-// [Gusfield 1990].
+// Takes S from minimum cuts between nodes, where the weight of an edge is how far its value is from a whole number. The
+// cuts of a cut tree hold a violated row if there is one without ends [Padberg and Rao 1982; Letchford, Reinelt and
+// Theis 2008]. We take those of an equivalent flow tree [Gusfield 1990].
 void WalkRelaxation::separate_parity_cuts(const Clock& clock) {
   const int count = static_cast<int>(nodes_.size());
   MaxFlow distances(count);

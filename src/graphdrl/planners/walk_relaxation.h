@@ -13,11 +13,11 @@
 //   edges       u[e] + w[e] <= y[v] for both its nodes
 //   connection  x(δ(S)) + z(S) >= 2 y[v] for v in S; directed: x(in(S)) >= y[v]
 //   blocks      y[v] <= y[r], where r parts v's block from the start
-//   partition   u + w of all edges between the parts V0, V1 … Vk of V, of which V0 has s, >= y[v1] + … + y[vk], vi in
-//   Vi parity      u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1) for any F in δ(S): of the u of δ(S) and z(S), an even
+//   partition   u + w of all edges between the parts V0, V1 … Vk of V >= y[v1] + … + y[vk], with s in V0, vi in Vi
+//   parity      u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1) for any F in δ(S): of the u of δ(S) and z(S), an even
 //               number is 1
-// Degrees, cost and ends are there from the beginning, the others once a solution violates them: connection by maximum
-// flows from each node to the start, parity for components of the edges with a fraction.
+// Degrees, cost and ends are there from the beginning. The others are added once a solution violates them: connection
+// by maximum flows from each node to the start, parity for components of the edges with a fraction.
 #pragma once
 
 #include <functional>

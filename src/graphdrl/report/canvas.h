@@ -48,15 +48,15 @@ class Canvas {
   virtual void polygon(std::span<const Point> corners, Colour fill) = 0;
   virtual void text(Point at, std::string_view text, double size, Colour colour, Anchor anchor) = 0;
 
-  // A part of the walk, which takes place between two shares of its time; a moving picture draws it then.
+  // A part of the walk, between two shares of its time, at which a moving picture draws it.
   virtual void walk_part(std::span<const Point> points, Colour colour, double width, double begin, double end) = 0;
 
   // The bytes of the file.
   virtual std::string finish() = 0;
 };
 
-// title, description: for those who cannot see it. seconds: a moving picture of that length that begins again and
-// again, by CSS alone; empty: a still one.
+// title, description: what screen readers say. seconds: the length of a moving picture, which repeats itself by CSS
+// alone; empty: a still picture.
 std::unique_ptr<Canvas> make_svg_canvas(double width, double height, const std::string& title,
                                         const std::string& description, std::optional<double> seconds = {});
 

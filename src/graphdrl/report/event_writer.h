@@ -17,8 +17,8 @@ struct Scalar {
 // Appends to a new file events.out.tfevents.* in a folder. Every record is flushed, so that TensorBoard can follow.
 class EventWriter {
  public:
-  // `first_step`: TensorBoard drops whatever earlier files of the folder say from this step on, so that a resumed run
-  // shows no step twice. Throws Error where the file cannot be written.
+  // `first_step`: TensorBoard drops all steps from this one on that earlier files of the folder hold, so that a resumed
+  // run shows no step twice. Throws Error if the file cannot be written.
   EventWriter(const std::filesystem::path& folder, std::int64_t first_step);
 
   void write(std::int64_t step, std::span<const Scalar> scalars);

@@ -23,7 +23,7 @@ struct Pair {
   double distance;  // wanted
 };
 
-// Distances in edges from a node; -1 where there is no way.
+// Distances in edges from a node; -1 for nodes that it has no way to.
 std::vector<int> hops_from(const Graph& graph, NodeId source) {
   std::vector<int> hops(graph.node_count(), -1);
   std::vector<NodeId> queue = {source};
@@ -38,7 +38,7 @@ std::vector<int> hops_from(const Graph& graph, NodeId source) {
   return hops;
 }
 
-// Pairs of what has no way between lie a little farther apart than all that has.
+// Nodes without a way between them lie a little farther apart than any that have one.
 std::vector<Pair> pairs_of(const Graph& graph) {
   const NodeId count = graph.node_count();
   const bool all = count <= kMostByAllPairs;

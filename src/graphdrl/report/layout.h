@@ -8,10 +8,10 @@
 
 namespace graphdrl {
 
-// Places whose distances are near those in the graph, in edges whichever way they lead: stress lowered by stochastic
-// gradient descent [Zheng, Pawar and Goodman 2018], over all pairs of a small graph; over edges and distances from a
-// few nodes far apart of a large one. The same graph is drawn the same. Cost: O(pairs), at most about 3 million, or
-// O(edges).
+// Places whose distances are near those in the graph, in edges of either direction. Stochastic gradient descent lowers
+// the stress [Zheng, Pawar and Goodman 2018]: over all pairs of a small graph; in a large one over its edges and the
+// distances from a few nodes far apart. The same graph is always drawn the same way. Cost: O(pairs), at most about 3
+// million, or O(edges).
 std::vector<Point> lay_out(const Graph& graph);
 
 }  // namespace graphdrl

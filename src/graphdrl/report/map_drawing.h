@@ -1,4 +1,4 @@
-// Grid maps and walks on them, as text.
+// Grid maps as text, and when a walk first visits their cells.
 #pragma once
 
 #include <span>
@@ -9,10 +9,9 @@
 
 namespace graphdrl {
 
-// One character per cell without a walk ('.' free, '#' blocked). With one, each visited cell shows the step of its
-// first visit. REQUIRES: world.has_cells(); the walk, which may be empty, is valid.
-std::string draw_map_text(const World& world, std::span<const NodeId> walk);
-// The step at which each node was first visited; -1 where never. [N]
+// One character per cell: '.' free, '#' blocked. REQUIRES: world.has_cells().
+std::string draw_map_text(const World& world);
+// The step at which each node was first visited; -1 if never. [N]
 std::vector<int> first_visits(const World& world, std::span<const NodeId> walk);
 
 }  // namespace graphdrl

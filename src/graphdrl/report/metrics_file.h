@@ -1,4 +1,4 @@
-// metrics.jsonl: one JSON object per line, for whoever wants the curves without TensorBoard.
+// metrics.jsonl: one JSON object per line, the curves of a training without TensorBoard.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace graphdrl {
 
 class MetricsFile {
  public:
-  // Appends to a file, after dropping the lines past count `done` that a run left behind which was resumed from an
-  // older checkpoint. `counter` is what lines are counted by and begin with: "episode". Throws Error where the file
-  // cannot be written.
+  // Appends to a file. Drops lines past count `done` first, which a run leaves that is resumed from an older
+  // checkpoint. `counter` is what lines are counted by and begin with: "episode". Throws Error if the file cannot be
+  // written.
   MetricsFile(const std::filesystem::path& path, std::string counter, std::int64_t done);
 
-  // What is not a number becomes null.
+  // NaN and infinity become null.
   void write(std::int64_t count, std::span<const Scalar> scalars);
 
  private:

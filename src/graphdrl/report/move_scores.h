@@ -1,4 +1,4 @@
-// What a policy thinks of the moves it could make.
+// How a policy scores its possible moves.
 #pragma once
 
 #include <string>
@@ -20,9 +20,9 @@ struct MoveScores {
   std::vector<std::vector<MoveScore>> steps;
 };
 
-// What a policy thinks along a plan's walk. policy: explorer, the file of one, or of a network of the paper. An
-// explorer scores first visits by their shortfall [planners/explorer.h], a network of the paper the neighbouring cells
-// by their Q-values. Throws Error where the policy cannot be read or has no place in this world.
+// The scores along a plan's walk. policy: explorer, or the file of an explorer or of a network of the paper. An
+// explorer scores first visits by their shortfall [planners/explorer.h]; a network of the paper scores the neighbouring
+// cells by their Q-values. Throws Error if the policy cannot be read or does not work in this world.
 MoveScores scores_along(const PlanReport& report, const std::string& policy);
 
 }  // namespace graphdrl

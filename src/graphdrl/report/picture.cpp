@@ -21,12 +21,12 @@ constexpr double kTextSize = 13;
 constexpr double kLineHeight = 19;
 constexpr double kTitleHeight = 30;
 constexpr double kLeastWidth = 420;
-constexpr double kSide = 1000;  // of the map, in pixels, at most where its cells allow it
+constexpr double kSide = 1000;  // of the map, in pixels, if its cells are not too large or too small for that
 
 constexpr int kFewCells = 200;  // drawn as nodes and edges
 constexpr double kFewCellsSpacing = 40;
 constexpr double kMostCellPixels = 24;
-constexpr double kLinePixels = 5;  // cells from this size on have the walk as a line, others are coloured themselves
+constexpr double kLinePixels = 5;  // larger cells have the walk as a line; smaller ones are coloured themselves
 
 constexpr NodeId kMostWithLabels = 60;
 constexpr std::int64_t kMostEdgesDrawn = 300'000;
@@ -232,7 +232,7 @@ void Picture::draw_nodes(Canvas& canvas) const {
 void Picture::draw_walk(Canvas& canvas) const {
   const double line = std::clamp(spacing_ / 14, 0.8, 3.0);
   const bool lines = !cells_ || spacing_ >= kLinePixels;
-  // A run over an edge that was walked before keeps beside the earlier ones.
+  // A run over an edge that was walked before is drawn beside the earlier ones.
   std::map<std::pair<NodeId, NodeId>, int> runs;
   const std::size_t steps = walk_.size() - 1;
   Point from = places_[walk_.front()];
@@ -250,7 +250,7 @@ void Picture::draw_walk(Canvas& canvas) const {
       const Point a = places_[walk_[step]];
       const Point b = places_[walk_[step + 1]];
       const double length = std::max(1e-9, std::hypot(b.x - a.x, b.y - a.y));
-      // To the same side whichever way the edge is walked.
+      // To the same side in both directions of the edge.
       const double side = walk_[step] < walk_[step + 1] ? lane : -lane;
       const Point shift{-side * (b.y - a.y) / length, side * (b.x - a.x) / length};
       from = {a.x + shift.x, a.y + shift.y};

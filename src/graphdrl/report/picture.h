@@ -12,16 +12,16 @@
 
 namespace graphdrl {
 
-// A grid of many cells is drawn as cells, in one bitmap; others as nodes and edges, where they lie, or laid out
-// [report/layout.h]. The walk's colour says when: from dark to light. Its start is a ring, its end an arrow head; where
-// it runs over an edge again it keeps beside. Nodes never visited are marked.
+// A grid of many cells is drawn as cells, in one bitmap. Other worlds are drawn as nodes and edges, at their places or
+// laid out [report/layout.h]. The walk's colour goes from dark to light with time. Its start is a ring, its end an
+// arrow head. When it takes an edge again, it is drawn beside the first time. Nodes never visited are marked.
 class Picture {
  public:
-  // The walk may be empty, is valid otherwise. title: a line above; notes: lines below.
+  // The walk is valid or empty. title: a line above; notes: lines below.
   Picture(const World& world, std::span<const NodeId> walk, std::string title, std::vector<std::string> notes);
 
   std::string svg() const;
-  // One that draws the walk as time goes by.
+  // A moving picture, which draws the walk step by step.
   std::string moving_svg() const;
   std::string png() const;
   Bitmap pixels() const;
@@ -44,9 +44,9 @@ class Picture {
   std::vector<NodeId> walk_;
   std::string title_;
   std::vector<std::string> notes_;
-  std::vector<int> first_visits_;  // [N], steps; -1 where never
+  std::vector<int> first_visits_;  // [N], steps; -1: never visited
   bool cells_ = false;             // drawn as cells
-  double spacing_ = 1;             // pixels between neighbours, about
+  double spacing_ = 1;             // pixels between neighbours, roughly
   double width_ = 0;
   double map_bottom_ = 0;
   std::vector<Point> places_;  // [N], of centres

@@ -30,7 +30,7 @@ std::string label_of(const World& world, NodeId node) {
   return world.labels().empty() ? std::to_string(node) : world.labels()[node];
 }
 
-// The step at which each node was first visited; empty where never.
+// The step at which each node was first visited; empty if never.
 std::vector<std::string> visit_order(const PlanReport& report) {
   std::vector<std::string> order(report.world.node_count());
   const std::vector<NodeId>& walk = report.plan.walk;
@@ -76,6 +76,19 @@ std::string plan_csv(const PlanReport& report) {
   }
   return text;
 }
+
+}  // namespace
+
+std::string format_walk(const World& world, std::span<const NodeId> walk) {
+  const bool labels = !world.labels().empty();
+  std::string text = labels ? "node,label\n" : "node\n";
+  for (const NodeId node : walk) {
+    text += labels ? fmt::format("{},{}\n", node, csv(escaped(world.labels()[node]))) : fmt::format("{}\n", node);
+  }
+  return text;
+}
+
+namespace {
 
 GraphMap graph_of(const World& world) {
   GraphMap map{.graph = world.graph(),
@@ -131,8 +144,8 @@ std::string plan_geojson(const PlanReport& report) {
   return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-// A message nav_msgs/Path [docs.ros.org], as `rostopic pub -f` and `ros2 topic pub` take it: every pose looks to the
-// next.
+// A message nav_msgs/Path [docs.ros.org], as `rostopic pub -f` and `ros2 topic pub` take it. Every pose faces the
+// next one.
 std::string plan_ros_path(const PlanReport& report) {
   std::string text = "header:\n  frame_id: map\nposes:\n";
   const std::vector<NodeId>& walk = report.plan.walk;
@@ -188,7 +201,7 @@ struct PlanFormat {
   bool needs_coordinates = false;
 };
 
-// Longer endings before those that they end with.
+// A longer ending stands before a shorter one that it ends with.
 constexpr std::array kFormats = {
     PlanFormat{".json", plan_json_text},
     PlanFormat{".csv", plan_csv},

@@ -1,7 +1,8 @@
-// Plans as files, for whatever takes them further.
+// Plans as files, for other programs, and plans read back.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,15 @@ namespace graphdrl {
 // The document that `graphdrl plan --json` prints.
 nlohmann::ordered_json plan_json(const PlanReport& report);
 
-// What has been spent at every node of the walk.
+// The cost so far at every node of the walk.
 std::vector<double> costs_so_far(const PlanReport& report);
 
-// Throws Error where no plan is written in a file with this ending: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
-// nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h); and where the format needs coordinates that
-// the world does not have.
+// The walk, a node a line below a header: node ids, with the labels beside them. read_plan() reads it.
+std::string format_walk(const World& world, std::span<const NodeId> walk);
+
+// Throws Error unless the file has one of these endings: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
+// nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h). Throws Error also if the format needs
+// coordinates and the world has none.
 void check_plan_file(const World& world, const std::string& file);
 
 // Writes a plan in the format of the file's ending. Throws Error.
@@ -26,16 +30,18 @@ void write_plan(const PlanReport& report, const std::string& file);
 // The endings, for help texts.
 std::string plan_file_endings();
 
-// A plan from a file: the document above, an array of node ids, or lines with a node each, the first field of CSV or,
-// below a header, the column `node`, `id` or `label`. Nodes are named as for parse_node(). Budget and end are what is
-// asked, else what the document says, else what the walk costs and anywhere; policy and bound what the document says,
-// else the file's name and none. Throws Error, naming the file and the line, also where a step follows no edge.
+// A plan from a file: the document above, an array of node ids, or lines. Lines have a node each: the first field of
+// CSV or, below a header, the column `node`, `id` or `label`; a single line without a header has the whole walk. Nodes
+// are named as for parse_node(). Budget and end are what is asked, else what the document says, else what the walk costs
+// and anywhere; policy and bound what the document says, else the file's name and none. Throws Error, naming the file
+// and the line, also where a step follows no edge, and where several lines of several words leave open which of them
+// are nodes.
 PlanReport read_plan(const World& world, const std::string& file, const Asked& asked = {});
 
 // The same for a text; `file` is for error messages.
 PlanReport parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked = {});
 
-// Throws Error, naming `file`, where the plan's walk costs more than the task's budget or ends elsewhere.
+// Throws Error, naming `file`, if the plan's walk costs more than the task's budget or does not end where it must.
 void check_walk(const PlanReport& report, const std::string& file);
 
 }  // namespace graphdrl

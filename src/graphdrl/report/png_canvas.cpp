@@ -63,7 +63,7 @@ class PngCanvas final : public Canvas {
     for (const Segment& segment : segments) {
       cairo_move_to(context_.get(), segment.from.x, segment.from.y);
       cairo_line_to(context_.get(), segment.to.x, segment.to.y);
-      cairo_stroke(context_.get());  // one by one: a path of many grows slow
+      cairo_stroke(context_.get());  // one by one: long paths are slow
     }
   }
 

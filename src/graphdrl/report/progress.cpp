@@ -1,12 +1,13 @@
 #include "graphdrl/report/progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
+
+#include "graphdrl/report/terminal_picture.h"
 
 namespace graphdrl {
 namespace {
@@ -21,11 +22,6 @@ std::string format_duration(double seconds) {
   const auto whole = static_cast<std::int64_t>(std::lround(seconds));
   if (whole >= 3600) return fmt::format("{}h{:02}m", whole / 3600, whole / 60 % 60);
   return fmt::format("{}m{:02}s", whole / 60, whole % 60);
-}
-
-std::size_t terminal_columns(std::FILE* out) {
-  winsize size{};
-  return ioctl(fileno(out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -59,7 +55,7 @@ void ProgressDisplay::write(std::string line, double share) {
     std::fputs((unit_ + " " + line + '\n').c_str(), out_);
   } else {
     // The bar takes what room the numbers leave.
-    const std::size_t columns = terminal_columns(out_);
+    const auto columns = static_cast<std::size_t>(screen_of(out_).columns);
     const std::size_t room = columns > line.size() + 4 ? std::min(columns - line.size() - 4, kMaxBarWidth) : 0;
     const auto filled = static_cast<std::size_t>(static_cast<double>(room) * std::clamp(share, 0.0, 1.0));
     if (room > 0) line = fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(room - filled, '.'), line);

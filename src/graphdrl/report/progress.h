@@ -1,4 +1,4 @@
-// What a training says while it runs.
+// Progress on standard error: of trainings, plans and evaluations.
 #pragma once
 
 #include <chrono>
@@ -8,17 +8,16 @@
 
 namespace graphdrl {
 
-// Shows nothing, rather than fail, where the stream is closed. A bar that rewrites its line on a terminal, plain lines
-// at intervals elsewhere.
+// A bar that rewrites its line on a terminal; plain lines at intervals elsewhere; nothing if the stream is closed.
 class ProgressDisplay {
  public:
-  // `unit`: what is counted, as "episode". `first`: how many were done when this session began, for the time left.
+  // `unit`: what is counted, such as "episode". `first`: how many were done before this session.
   ProgressDisplay(std::FILE* out, std::string unit, std::int64_t first);
 
   // Shows how many are done and the status, unless the last one was shown a moment ago; `always` shows it in any case.
   void show(std::int64_t done, std::int64_t all, const std::string& status, bool always = false);
 
-  // The same with a line of one's own, beside a bar so full.
+  // Shows the caller's own line, beside a bar that is filled to this share.
   void show_line(const std::string& line, double share);
 
   // Ends a bar's line.

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
+#include <span>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/budget.h"
@@ -23,7 +25,7 @@ std::vector<NodeId> walk_of_json(const World& world, const nlohmann::json& docum
     throw Error({.what = "no walk", .expected = "an array, or one under the key \"walk\"", .where = file});
   std::vector<NodeId> nodes;
   for (const nlohmann::json& item : walk) {
-    // A number is a node id, a text is what users call it.
+    // A number is a node id; a text names a node as users do.
     const std::string name = item.is_number_integer() ? fmt::format("#{}", item.dump())
                              : item.is_string()       ? item.get<std::string>()
                                                       : "";
@@ -35,40 +37,55 @@ std::vector<NodeId> walk_of_json(const World& world, const nlohmann::json& docum
   return nodes;
 }
 
+struct Row {
+  std::string where;
+  std::vector<std::string> fields;
+};
+
+std::vector<Row> rows_of(const std::string& text, const std::string& file, char& separator) {
+  std::vector<Row> rows;
+  for (Lines lines(text); lines.next();) {
+    if (is_comment(lines.line())) continue;
+    if (rows.empty()) separator = separator_of(lines.line());
+    rows.push_back({fmt::format("{}:{}", file, lines.number()), split_fields(lines.line(), separator)});
+  }
+  return rows;
+}
+
 std::vector<NodeId> walk_of_lines(const World& world, const std::string& text, const std::string& file) {
-  std::vector<NodeId> nodes;
-  Lines lines(text);
-  int column = 0;
-  bool ids = false;  // the column has node ids
   char separator = ' ';
-  bool first = true;
-  while (lines.next()) {
-    const std::string_view line = lines.line();
-    if (is_comment(line)) continue;
-    const std::string where = fmt::format("{}:{}", file, lines.number());
-    if (first) separator = separator_of(line);
-    const std::vector<std::string> fields = split_fields(line, separator);
-    if (std::exchange(first, false)) {
-      const std::array<std::string_view, 2> id_names = {"node", "id"};
-      const std::array<std::string_view, 1> names = {"label"};
-      const int id_column = column_of(fields, id_names);
-      const int label_column = column_of(fields, names);
-      ids = id_column != kNoColumn;
-      if (ids || label_column != kNoColumn) {
-        column = ids ? id_column : label_column;
-        continue;
-      }
-    }
-    if (std::ssize(fields) <= column) {
-      throw Error({.what = "no node", .expected = "a node a line", .got = in_quotes(line), .where = where});
-    }
-    const std::string& name = fields[column];
+  const std::vector<Row> rows = rows_of(text, file, separator);
+  if (rows.empty()) return {};
+  const std::vector<std::string>& header = rows[0].fields;
+  const std::array<std::string_view, 2> id_names = {"node", "id"};
+  const std::array<std::string_view, 1> label_names = {"label"};
+  const int id_column = column_of(header, id_names);
+  const int label_column = column_of(header, label_names);
+  const bool ids = id_column != kNoColumn;
+  const bool has_header = ids || label_column != kNoColumn;
+  const int column = ids ? id_column : std::max(label_column, 0);
+  std::vector<NodeId> nodes;
+  const auto add = [&](const std::string& name, const std::string& where) {
     nodes.push_back(parse_node(world, ids && parse_number(name) ? fmt::format("#{}", name) : name, where + ": node"));
+  };
+  if (!has_header && rows.size() == 1) {
+    for (const std::string& name : header) add(name, rows[0].where);
+    return nodes;
+  }
+  for (const Row& row : std::span(rows).subspan(has_header ? 1 : 0)) {
+    const bool open = !has_header && separator == ' ' && row.fields.size() > 1;
+    if (open || std::ssize(row.fields) <= column) {
+      throw Error({.what = open ? "several words a line, and no header says which is the node" : "no node",
+                   .expected = "a node a line, or all nodes on one line",
+                   .got = in_quotes(fmt::format("{}", fmt::join(row.fields, " "))),
+                   .where = row.where});
+    }
+    add(row.fields[column], row.where);
   }
   return nodes;
 }
 
-// Throws Error where a step of the walk follows no edge.
+// Throws Error if a step of the walk follows no edge.
 void check_steps(const World& world, const std::vector<NodeId>& walk, const std::string& file) {
   const auto name = [&](NodeId node) {
     return world.labels().empty() ? fmt::format("node {}", node) : in_quotes(world.labels()[node]);

@@ -122,7 +122,7 @@ std::string html_text(std::string_view text) {
   return escaped;
 }
 
-// A word that nobody can know before the page is made.
+// A random word, unknown before the page is made.
 std::string nonce() {
   std::random_device device;
   std::string bytes;
@@ -203,7 +203,7 @@ std::string ReportPage::html() const {
     if (token == "connect") return connect;
     throw std::logic_error(fmt::format("page.html has a token {}", token));
   };
-  // In one pass: what stands in for a token is no template itself.
+  // In one pass: tokens within the text put in are not replaced.
   std::string page;
   std::string_view rest = page_template();
   for (std::size_t begin = rest.find("{{"); begin != std::string_view::npos; begin = rest.find("{{")) {

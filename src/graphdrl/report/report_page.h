@@ -29,7 +29,7 @@ class ReportPage {
   // The data of the page, as one JSON document.
   std::string data() const;
 
-  // The page: it asks for nothing but, where it watches, data.json.
+  // The page. It asks the network for nothing; a watching page asks its server for data.json.
   std::string html() const;
 
  private:

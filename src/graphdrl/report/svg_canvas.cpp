@@ -113,8 +113,8 @@ class SvgCanvas final : public Canvas {
   void walk_part(std::span<const Point> points, Colour colour, double width, double begin, double end) override {
     std::string moving;
     if (seconds_) {
-      // Drawn from its begin to its end, and left there until all begins again.
-      constexpr double kShown = 0.9;  // of the time: then the whole picture stays for a while
+      // Drawn between its two times, and kept until the picture begins again.
+      constexpr double kShown = 0.9;  // of the time; the rest shows the finished picture
       styles_ +=
           fmt::format("@keyframes w{0}{{0%,{1:.4g}%{{stroke-dashoffset:1.01}}{2:.4g}%,100%{{stroke-dashoffset:0}}}}\n",
                       parts_, 100 * kShown * begin, 100 * kShown * end);

@@ -3,7 +3,7 @@
 namespace graphdrl {
 namespace {
 
-// Most are small: there the beam's values are nearly exact, and several lessons cost as much as one of a large world.
+// Most are small: there the search's values are nearly exact, and several lessons cost as much as one of a large world.
 // Larger ones are worth 0.7 points on graphs of 200 nodes and cost grids up to 2 (docs/explorer.md, "What pays").
 constexpr int kSides[] = {4, 5, 6, 7, 8, 9, 10, 11, 13, 15, 16, 20, 26};
 constexpr int kNodes[] = {16, 33, 55, 77, 110, 140};

@@ -1,6 +1,6 @@
 // Small helpers that all parts use.
 
-// What is wrong with the data, as one line for the reader.
+// An error in the data, as one line for the reader.
 class DataError extends Error {}
 
 function check(condition, message) {
@@ -27,17 +27,17 @@ function fill_select(select, names, chosen) {
 
 const kDash = '–';
 
-// A number with at most so many decimals, without zeros at its end.
+// A number with at most this many decimals, without zeros at its end.
 function plain(value, decimals = 2) {
   return Number(value).toLocaleString('en', { maximumFractionDigits: decimals });
 }
 
-// A number with exactly so many decimals, or a dash where there is none.
+// A number with exactly this many decimals, or a dash for null.
 function fixed(value, decimals = 1) {
   return typeof value === 'number' && Number.isFinite(value) ? value.toFixed(decimals) : kDash;
 }
 
-// A metric's value: four significant digits, whatever its size.
+// A metric's value, to four significant digits.
 function significant(value) {
   if (value === 0) return '0';
   const size = Math.abs(value);

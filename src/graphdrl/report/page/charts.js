@@ -79,14 +79,14 @@ function axis(title, more = {}) {
   };
 }
 
-// Of a logarithmic axis, 1, 2 and 5 of each decade; all where it spans less than one.
+// Of a logarithmic axis: 1, 2 and 5 of each decade; all if it spans less than one decade.
 function log_tick(value, ticks) {
   const digit = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
   const wide = ticks.length > 0 && ticks[ticks.length - 1].value / ticks[0].value > 10;
   return !wide || [1, 2, 5].includes(digit) ? significant(value) : '';
 }
 
-// Puts a chart on a canvas, in place of one that is there.
+// Puts a chart on a canvas, in place of the one on it.
 function put_chart(canvas, config) {
   Chart.getChart(canvas)?.destroy();
   return new Chart(canvas, config);

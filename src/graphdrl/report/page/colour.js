@@ -18,7 +18,7 @@ const in_gamut = (channels) => channels.every((value) => value >= -1e-4 && value
 
 const gamma = (value) => (value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055);
 
-// A CSS colour. Where sRGB lacks so much chroma, the most it has; lightness and hue stay.
+// A CSS colour. If sRGB lacks that much chroma, takes the most it has; lightness and hue stay.
 function oklch(lightness, chroma, hue) {
   let low = 0;
   let high = chroma;

@@ -15,8 +15,8 @@ function read_evaluation(evaluation) {
   };
 }
 
-// The 95 % interval of the mean over maps, from the maps' own: errors of different maps are independent. Null where a
-// map has none.
+// The 95 % interval of the mean over maps, from the maps' own intervals: errors of different maps are independent. Null
+// if a map has no interval.
 function overall_interval(rows, mean) {
   if (rows.length === 0 || !is_number(mean)) return null;
   if (!rows.every((row) => Array.isArray(row.ci95))) return null;
@@ -217,7 +217,7 @@ class EvaluationView {
   }
 }
 
-// The interval, without a part beyond 0 or 100; a point where there is only a mean.
+// The interval, cut at 0 and 100; a point if there is only a mean.
 function bar_of(row) {
   if (Array.isArray(row?.ci95)) return row.ci95.map((x) => clamp(x, 0, 100));
   return is_number(row?.mean) ? [row.mean, row.mean] : null;

@@ -107,7 +107,7 @@ class MapView {
     this.drawn_view = null;
   }
 
-  // So much that the controls below are in sight too. Phones change the window's height while they scroll.
+  // Leaves room for the controls below. Phones change the window's height while they scroll.
   most_height() {
     return Math.min(kMostHeight, Math.max(240, kMostOfWindow * screen.availHeight, kMostOfWindow * innerHeight));
   }

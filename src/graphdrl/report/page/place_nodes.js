@@ -120,7 +120,7 @@ function refine([x, y], node_count, lists) {
 function rescale(places, longest) {
   const span = places[0].reduce((most, value) => Math.max(most, Math.abs(value)), 0);
   const factor = span > 0 ? longest / (2 * span) : 0;
-  // Nodes in one place would never part.
+  // Nodes in one place would never separate.
   return places.map((axis) => axis.map((value, i) => value * factor + 1e-3 * Math.sin(i)));
 }
 

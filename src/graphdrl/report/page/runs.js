@@ -20,7 +20,7 @@ function smoothed(points, percent) {
   });
 }
 
-// How much of a smoothed value is the past; nought where the window is no longer than a value.
+// How much of a smoothed value is the past; 0 if the window is no longer than one value.
 function past_share(points, percent) {
   return 1 - 1 / Math.max(1, (points.length * percent) / 100);
 }
@@ -36,7 +36,7 @@ function read_run(run, index) {
   return { name: String(run.name ?? `Run ${index + 1}`), lines, counter, amount: kAmounts.find(has), metrics };
 }
 
-// The values of a metric, over the counter or over the amount; where either is missing, there is no point.
+// The values of a metric, over the counter or over the amount; no point if either is missing.
 function points_of(run, metric, over_amounts) {
   const key = over_amounts ? run.amount : run.counter;
   const whole = run.lines.filter((line) => is_number(line[key]) && is_number(line[metric]));
@@ -140,7 +140,7 @@ class Runs {
   }
 
   draw_legend() {
-    // Whoever has just used a checkbox keeps the focus on it.
+    // A checkbox that was just used keeps the focus.
     const focused = [...this.legend.querySelectorAll('input')].indexOf(document.activeElement);
     const items = this.runs.map((run, i) => {
       const box = element('input', { type: 'checkbox', checked: !this.hidden.has(run.name) });

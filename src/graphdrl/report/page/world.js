@@ -109,7 +109,7 @@ class World {
     return `node ${node}`;
   }
 
-  // What one says of the world in a few words.
+  // The world described in a few words.
   describe() {
     const cells = `${plain(this.rows)} by ${plain(this.cols)} cells`;
     const size = this.is_grid ? cells : plural(this.node_count, 'node');
@@ -182,7 +182,7 @@ class Trail {
     return (100 * this.visited[step]) / this.valid_count;
   }
 
-  // In percent of all there is: of prizes where there are any, else of nodes. Upper bounds are in this unit.
+  // In percent: of all prizes if the world has any, else of all nodes. Upper bounds are in this unit.
   worth(step) {
     if (!this.prize) return this.coverage(step);
     return this.total_prize > 0 ? (100 * this.prize[step]) / this.total_prize : 100;
@@ -192,7 +192,7 @@ class Trail {
     return this.last === 0 ? 0 : Math.floor(((kBands - 1) * step) / this.last);
   }
 
-  // The scores at a step as [{node, score}], best first; null where there are none.
+  // The scores at a step as [{node, score}], best first; null without scores.
   scores(step) {
     const flat = this.plan.scores?.[step];
     if (!Array.isArray(flat) || flat.length < 2) return null;
