@@ -521,10 +521,8 @@ def test_graphdrl_loads_no_libtorch_and_no_openblas_but_the_openmp_build():
         return
     large = loaded_libraries("graphdrl-train")
     assert [name for name in large if name.startswith("libtorch_cpu")]
-    for library in [small["libopenblas.so.0"]] + [
-        large[name] for name in ("libopenblas.so.0", "libblas.so.3", "liblapack.so.3")
-    ]:
-        assert "openblas-openmp" in os.path.realpath(library)
+    for name in ("libopenblas.so.0", "libblas.so.3", "liblapack.so.3"):
+        assert "openblas-openmp" in os.path.realpath(large[name])
 
 
 def test_graphdrl_trains_alone_and_asks_for_graphdrl_train_where_cuda_does(run, tmp_path):
@@ -569,18 +567,10 @@ def test_network_policies_take_large_maps(run, trained, tmp_path):
 
 def test_bench_gives_the_documented_keys_and_one_signature(run):
     first = json.loads(run("graphdrl", "bench", "--json").stdout)
-    assert (
-        list(first)
-        == "signature signature_learned env_steps_per_s move_ms learning_step_ms products_share gemm_share".split()
-    )
-    shares = ["products_share", "gemm_share"] if WITH_TORCH else ["products_share"]
-    for key in ("env_steps_per_s", "learning_step_ms", *shares):
+    assert list(first) == "signature signature_learned env_steps_per_s move_ms learning_step_ms".split()
+    for key in ("env_steps_per_s", "learning_step_ms"):
         assert list(first[key]) == ["1", "2"] and all(value > 0 for value in first[key].values())
-    assert all(share < 1 for share in first["products_share"].values())
-    if not WITH_TORCH:  # nor OpenBLAS
-        assert first["gemm_share"] is None
-    text = run("graphdrl", "bench").stdout
-    assert first["signature"] in text and ("sgemm" in text) == WITH_TORCH
+    assert first["signature"] in run("graphdrl", "bench").stdout
 
 
 def plan(run, *arguments):
