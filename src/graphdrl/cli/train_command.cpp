@@ -295,6 +295,13 @@ std::unique_ptr<PaperLearner> CpuOrTorchProgram::make(const std::string& device,
   return LearnerSource::make(device, options, rng);
 }
 
+// Asked first, on the main thread: an explorer's trainings name no device.
+std::vector<std::unique_ptr<LearnerSource>> CpuOrTorchProgram::make_together(const std::string& device,
+                                                                             int trainings) const {
+  if (device != "cpu" && !device.empty()) become_torch_program(device, arguments_);
+  return LearnerSource::make_together(device, trainings);
+}
+
 void catch_training_signals() {
   struct sigaction action {};
   action.sa_handler = remember_signal;

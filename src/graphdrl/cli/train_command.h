@@ -21,6 +21,7 @@ class CpuOrTorchProgram final : public LearnerSource {
   explicit CpuOrTorchProgram(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {}
   std::unique_ptr<PaperLearner> make(const std::string& device, const PaperLearnerOptions& options,
                                      Rng& rng) const override;
+  std::vector<std::unique_ptr<LearnerSource>> make_together(const std::string& device, int trainings) const override;
 
  private:
   std::vector<std::string> arguments_;
