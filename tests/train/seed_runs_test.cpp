@@ -85,17 +85,51 @@ TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
   EXPECT_TRUE(bytes_of(RunDirectory(folder / "all" / "seed-2")) == second);
 }
 
-// A kill while the folder was made: a run is missing, or has its configuration alone.
+// A kill while runs were begun: one is missing, one has its configuration alone.
 TEST(SeedRuns, BeginWhatIsMissing) {
   const TemporaryFolder folder;
   SeedRuns::start(short_paper(), {1, 2, 3}, folder / "all");
-  std::filesystem::remove_all(folder / "all" / "seed-2");
+  TrainOptions options = short_paper();
+  for (const std::uint64_t seed : {1, 3}) {
+    options.seed = seed;
+    Trainer::start(options, SeedRuns::run_directory_in(folder / "all", seed));
+  }
   std::filesystem::remove(folder / "all" / "seed-3" / "checkpoint.safetensors");
   SeedRuns runs = SeedRuns::resume(folder / "all");
   EXPECT_TRUE(runs.trainings().run(kNever, kSilent));
   for (const std::uint64_t seed : {2, 3}) {
     EXPECT_TRUE(bytes_of(SeedRuns::run_directory_in(folder / "all", seed)) ==
                 alone(folder / std::to_string(seed), short_paper(), seed));
+  }
+}
+
+// A device that works for trainings together: here each by itself.
+class Together final : public LearnerSource {
+ public:
+  std::vector<std::unique_ptr<LearnerSource>> make_together(const std::string& /*device*/,
+                                                            int trainings) const override {
+    groups.push_back(trainings);
+    std::vector<std::unique_ptr<LearnerSource>> sources;
+    for (int i = 0; i < trainings; ++i) sources.push_back(std::make_unique<LearnerSource>());
+    return sources;
+  }
+
+  mutable std::vector<int> groups;
+};
+
+TEST(SideBySideThread, TrainTogetherWhatDiffersInSeedsAlone) {
+  const TemporaryFolder folder;
+  std::vector<PlannedRun> runs;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    runs.push_back({short_paper(), RunDirectory(folder / std::to_string(seed))});
+    runs.back().options.seed = seed;
+  }
+  runs[1].options.batch_size = 4;
+  const Together learners;
+  EXPECT_TRUE(SideBySide(runs).run(kNever, kSilent, learners));
+  EXPECT_EQ(learners.groups, (std::vector<int>{2, 1}));
+  for (const PlannedRun& run : runs) {
+    EXPECT_TRUE(bytes_of(run.directory) == train_in(folder / "alone" / run.directory.path().filename(), run.options));
   }
 }
 
@@ -111,7 +145,6 @@ TEST(SeedRuns, TakeNoOtherRunForTheirs) {
               HasSubstr("holds a run already"));
   EXPECT_FALSE(SeedRuns::are_in(folder / "all"));
   SeedRuns::start(short_paper(), {1, 3}, folder / "all");
-  std::filesystem::remove_all(folder / "all" / "seed-3");
   Trainer::start(other, SeedRuns::run_directory_in(folder / "all", 3));
   EXPECT_THAT(error_of([&] { SeedRuns::resume(folder / "all"); }), HasSubstr("of other options"));
 }
