@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <type_traits>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/budget.h"
@@ -126,22 +127,13 @@ std::vector<AnyOptionField> paper_fields() {
   };
 }
 
-bool has_type_of(const Json& json, const std::string&) {
-  return json.is_string();
-}
-bool has_type_of(const Json& json, bool) {
-  return json.is_boolean();
-}
-bool has_type_of(const Json& json, std::int64_t) {
-  return json.is_number_integer();
-}
-bool has_type_of(const Json& json, std::uint64_t) {
-  return json.is_number_unsigned();
-}
-bool has_type_of(const Json& json, double) {
-  return json.is_number();
-}
-bool has_type_of(const Json& json, const std::vector<std::string>&) {
+template <typename T>
+bool has_type_of(const Json& json, const T&) {
+  if constexpr (std::is_same_v<T, std::string>) return json.is_string();
+  if constexpr (std::is_same_v<T, bool>) return json.is_boolean();
+  if constexpr (std::is_same_v<T, std::int64_t>) return json.is_number_integer();
+  if constexpr (std::is_same_v<T, std::uint64_t>) return json.is_number_unsigned();
+  if constexpr (std::is_same_v<T, double>) return json.is_number();
   return json.is_array() && std::all_of(json.begin(), json.end(), [](const Json& item) { return item.is_string(); });
 }
 
@@ -202,31 +194,25 @@ void write_config(const std::filesystem::path& path, const TrainOptions& options
 
 TrainOptions parse_options(const Json& given, const std::string& source) {
   if (!given.is_object()) throw Error({.what = "not a run's configuration", .where = source});
-  std::size_t known = 0;
-  const auto read = [&](const char* key, auto& value) {
-    if (!given.contains(key)) return;
+  const auto read = [&](const std::string& key, auto& value) {
     const Json& found = given[key];
     if (!has_type_of(found, value)) {
       throw Error({.what = "value of the wrong type", .got = in_quotes(found.dump()), .where = source + ": " + key});
     }
     found.get_to(value);
-    ++known;
   };
   std::string preset = kExplorerPreset;
-  read("preset", preset);
+  if (given.contains("preset")) read("preset", preset);
   TrainOptions options = default_options(preset);
-  known = 0;
-  for_each_option([&](const auto& option) {
-    if (option.defaults.of(preset)) read(option.key, options.*option.member);
-  });
-  if (known != given.size()) {
-    for (const auto& item : given.items()) {
-      const std::string& key = item.key();
-      bool taken = false;
-      for_each_option([&](const auto& option) { taken = taken || (option.key == key && option.defaults.of(preset)); });
-      if (taken) continue;
-      throw Error({.what = "no option of the preset " + preset, .got = in_quotes(key, 200), .where = source});
-    }
+  for (const auto& item : given.items()) {
+    bool taken = false;
+    for_each_option([&](const auto& option) {
+      if (option.key != item.key() || !option.defaults.of(preset)) return;
+      read(item.key(), options.*option.member);
+      taken = true;
+    });
+    if (taken) continue;
+    throw Error({.what = "no option of the preset " + preset, .got = in_quotes(item.key(), 200), .where = source});
   }
   validate(options);
   return options;
