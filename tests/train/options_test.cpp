@@ -18,9 +18,7 @@ TEST(TrainOptions, HaveDefaultsForEachPreset) {
   EXPECT_EQ(explorer.batch_size, 64);
   EXPECT_EQ(paper.batch_size, 32);
   EXPECT_EQ(explorer.rounds, 240);
-  EXPECT_EQ(paper.rounds, 0) << "not the paper's";
   EXPECT_EQ(paper.maps, std::vector<std::string>{"paper:a"});
-  EXPECT_TRUE(explorer.maps.empty());
   EXPECT_EQ(error_of([&] { validate(explorer); }), "");
   EXPECT_EQ(error_of([&] { validate(paper); }), "");
   EXPECT_THAT(error_of([] { default_options("best"); }), HasSubstr("--preset: bad value: expected explorer or paper"));

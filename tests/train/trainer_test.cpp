@@ -24,7 +24,10 @@ TrainOptions with_double_dqn(TrainOptions options) {
 
 INSTANTIATE_TEST_SUITE_P(, AnyTraining,
                          ::testing::Values(short_paper(), with_double_dqn(short_paper()), short_explorer()),
-                         [](const auto& test) { return test.param.preset + '_' + test.param.algorithm; });
+                         [](const auto& test) {
+                           const TrainOptions& options = test.param;
+                           return options.preset == kPaperPreset ? "paper_" + options.algorithm : options.preset;
+                         });
 
 TEST_P(AnyTraining, GivesTheSameBytesForAnyNumberOfThreads) {
   const TemporaryFolder folder;

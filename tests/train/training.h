@@ -15,7 +15,8 @@ namespace graphdrl {
 
 // What a test is listed as.
 inline void PrintTo(const TrainOptions& options, std::ostream* out) {
-  *out << options.preset << ' ' << options.algorithm;
+  *out << options.preset;
+  if (options.preset == kPaperPreset) *out << ' ' << options.algorithm;
 }
 
 // Steps of `short_paper`. It asks whether to stop before each, and after each episode.

@@ -105,14 +105,13 @@ class OptionFlags {
  private:
   template <typename T>
   void add(CLI::App& app, const OptionField<T>& option) {
-    const auto& [explorer, paper] = option.defaults;
     T& value = given_.*option.member;
-    value = explorer ? *explorer : *paper;
     CLI::Option* const flag = add_flag(app, flag_of(option.key), value, option.help)->capture_default_str();
-    if (!explorer) of_paper_.push_back(flag->group("Of the preset paper"));
-    if (!paper) of_explorer_.push_back(flag->group("Of the preset explorer"));
-    if (explorer && paper && *explorer != *paper && flag->get_name() != "--preset") {
-      flag->description(fmt::format("{} (paper: {})", flag->get_description(), Json(*paper).dump()));
+    if (option.preset == kPaperPreset) of_paper_.push_back(flag->group("Of the preset paper"));
+    if (option.preset == kExplorerPreset) of_explorer_.push_back(flag->group("Of the preset explorer"));
+    const T of_paper = default_options(kPaperPreset).*option.member;
+    if (option.preset.empty() && value != of_paper && flag->get_name() != "--preset") {
+      flag->description(fmt::format("{} (paper: {})", flag->get_description(), Json(of_paper).dump()));
     }
     copies_.push_back([flag, &value, member = option.member](TrainOptions& options) {
       if (flag->count() > 0) options.*member = value;
@@ -295,10 +294,10 @@ std::unique_ptr<PaperLearner> CpuOrTorchProgram::make(const std::string& device,
   return LearnerSource::make(device, options, rng);
 }
 
-// Asked first, on the main thread: an explorer's trainings name no device.
+// Asked first, on the main thread.
 std::vector<std::unique_ptr<LearnerSource>> CpuOrTorchProgram::make_together(const std::string& device,
                                                                              int trainings) const {
-  if (device != "cpu" && !device.empty()) become_torch_program(device, arguments_);
+  if (device != "cpu") become_torch_program(device, arguments_);
   return LearnerSource::make_together(device, trainings);
 }
 

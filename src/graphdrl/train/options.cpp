@@ -54,75 +54,62 @@ auto one_of(std::vector<std::string> choices) {
 constexpr auto anything = [](const std::string&, const auto&) {};
 
 template <typename T, typename Check>
-AnyOptionField field(const char* key, T O::*member, const Defaults<std::type_identity_t<T>>& defaults,
-                     const Check& check, const char* help) {
-  return OptionField<T>{.key = key, .member = member, .defaults = defaults, .check = check, .help = help};
+AnyOptionField field(const char* key, T O::*member, const Check& check, const char* help) {
+  return OptionField<T>{.key = key, .member = member, .check = check, .help = help};
 }
 
-// The explorer's defaults train for three quarters of an hour on two cores (docs/explorer.md). The paper's are the
-// paper's numbers (section 2.2), and its author's code where the paper is silent (docs/paper.md).
 std::vector<AnyOptionField> shared_fields() {
   return {
-      field("preset", &O::preset, {.explorer = kExplorerPreset, .paper = kPaperPreset},
-            one_of({kExplorerPreset, kPaperPreset}),
+      field("preset", &O::preset, one_of({kExplorerPreset, kPaperPreset}),
             "What to train: explorer, on random worlds of every kind, or paper (also chosen by its own options)"),
-      field("seed", &O::seed, {.explorer = 1, .paper = 1}, anything,
+      field("seed", &O::seed, anything,
             "The same seed gives the same policy file, byte for byte (same build and machine; on the CPU)"),
-      field("batch_size", &O::batch_size, {.explorer = 64, .paper = 32}, whole(1, 65'536),
-            "States or transitions per learning step"),
-      field("replay_capacity", &O::replay_capacity, {.explorer = 200'000, .paper = 100'000}, whole(1, kMany),
-            "States or transitions remembered"),
-      field("learning_rate", &O::learning_rate, {.explorer = 2e-3, .paper = 1e-3}, from_to(0.0, 1e3),
-            "Adam's; that of the explorer falls to a fiftieth"),
-      field("checkpoint_every", &O::checkpoint_every, {.explorer = 20, .paper = 100}, whole(1, kMany),
-            "Rounds or episodes between checkpoints"),
+      field("batch_size", &O::batch_size, whole(1, 65'536), "States or transitions per learning step"),
+      field("replay_capacity", &O::replay_capacity, whole(1, kMany), "States or transitions remembered"),
+      field("learning_rate", &O::learning_rate, from_to(0.0, 1e3), "Adam's; that of the explorer falls to a fiftieth"),
+      field("checkpoint_every", &O::checkpoint_every, whole(1, kMany), "Rounds or episodes between checkpoints"),
   };
 }
 
 std::vector<AnyOptionField> explorer_fields() {
   return {
-      field("rounds", &O::rounds, {.explorer = 240}, whole(1, kMany),
+      field("rounds", &O::rounds, whole(1, kMany),
             "Rounds of walks and updates; the learning rate falls over all of them"),
       field(
-          "largest", &O::largest, {.explorer = 26}, whole(5, 26),
+          "largest", &O::largest, whole(5, 26),
           "Largest side of training grids (4 to 11, 13, 15, 16, 20, 26); graphs have up to seven times as many nodes"),
-      field("teacher_steps", &O::teacher_steps, {.explorer = 2}, whole(1, 1000),
+      field("teacher_steps", &O::teacher_steps, whole(1, 1000),
             "Steps of the search that values a first visit, for each node left to visit"),
-      field("ranking", &O::ranking, {.explorer = 1}, from_to(0.0, 1e3),
+      field("ranking", &O::ranking, from_to(0.0, 1e3),
             "Weight of the loss on which first visit is best, beside that on values"),
-      field("lead", &O::lead, {.explorer = 0.6}, from_to(0.0, 1.0), "Share of walks that the network leads"),
-      field("walks", &O::walks, {.explorer = 512}, whole(1, 1'000'000), "Random walks per round"),
-      field("updates", &O::updates, {.explorer = 400}, whole(1, 1'000'000), "Learning steps per round"),
+      field("lead", &O::lead, from_to(0.0, 1.0), "Share of walks that the network leads"),
+      field("walks", &O::walks, whole(1, 1'000'000), "Random walks per round"),
+      field("updates", &O::updates, whole(1, 1'000'000), "Learning steps per round"),
   };
 }
 
 std::vector<AnyOptionField> paper_fields() {
   return {
-      field("maps", &O::maps, {.paper = {{"paper:a"}}}, anything,
-            "Maps to train on, drawn anew for every episode: paper:a, a file, a folder"),
-      field("episodes", &O::episodes, {.paper = 10'000}, whole(1, kMany),
-            "Episodes; epsilon's schedule spans all of them"),
+      field("maps", &O::maps, anything, "Maps to train on, drawn anew for every episode: paper:a, a file, a folder"),
+      field("episodes", &O::episodes, whole(1, kMany), "Episodes; epsilon's schedule spans all of them"),
       field(
-          "budget", &O::budget, {.paper = "25"},
-          [](const std::string&, const std::string& value) { Budget::parse(value); },
+          "budget", &O::budget, [](const std::string&, const std::string& value) { Budget::parse(value); },
           "Steps per episode, or a multiple of the valid nodes, as 1.1x"),
-      field("start", &O::start, {.paper = kRandomStart}, anything,
-            "Where episodes start: random, a node id, or row,col"),
-      field("reward", &O::reward, {.paper = "visit_penalty"}, one_of({"visit_penalty", "coverage_gain"}),
+      field("start", &O::start, anything, "Where episodes start: random, a node id, or row,col"),
+      field("reward", &O::reward, one_of({"visit_penalty", "coverage_gain"}),
             "visit_penalty (paper, eq. 3) or coverage_gain (eq. 2)"),
-      field("end_at_full_coverage", &O::end_at_full_coverage, {.paper = false}, anything,
+      field("end_at_full_coverage", &O::end_at_full_coverage, anything,
             "End an episode at full coverage, with a bonus of 1"),
-      field("punish_blocked_by_visits", &O::punish_blocked_by_visits, {.paper = false}, anything,
+      field("punish_blocked_by_visits", &O::punish_blocked_by_visits, anything,
             "Punish a blocked move by a further 0.1 per visit of the node (with visit_penalty)"),
-      field("algorithm", &O::algorithm, {.paper = "dqn"}, one_of({"dqn", "double_dqn"}), "dqn or double_dqn"),
-      field("discount", &O::discount, {.paper = 0.99}, from_to(0.0, 1.0),
-            "Of the next state's value; the paper's alpha"),
-      field("soft_update", &O::soft_update, {.paper = 1e-3}, from_to(0.0, 1.0),
+      field("algorithm", &O::algorithm, one_of({"dqn", "double_dqn"}), "dqn or double_dqn"),
+      field("discount", &O::discount, from_to(0.0, 1.0), "Of the next state's value; the paper's alpha"),
+      field("soft_update", &O::soft_update, from_to(0.0, 1.0),
             "Share of the online weights in the target's, per step; the paper's beta"),
-      field("dropout", &O::dropout, {.paper = 0.5}, from_to(0.0, 0.99), "Probability to drop a hidden value"),
-      field("device", &O::device, {.paper = "cpu"}, one_of({"cpu", "cuda"}),
+      field("dropout", &O::dropout, from_to(0.0, 0.99), "Probability to drop a hidden value"),
+      field("device", &O::device, one_of({"cpu", "cuda"}),
             "cpu or cuda; cuda needs graphdrl-train and a LibTorch that has it"),
-      field("precision", &O::precision, {.paper = "float32"}, one_of({"float32", "tf32"}),
+      field("precision", &O::precision, one_of({"float32", "tf32"}),
             "Of cuda's matrix products: float32, or tf32, with factors of 10 bits instead of 23"),
   };
 }
@@ -142,7 +129,14 @@ bool has_type_of(const Json& json, const T&) {
 const std::vector<AnyOptionField>& option_fields() {
   static const std::vector<AnyOptionField> fields = [] {
     std::vector<AnyOptionField> all = shared_fields();
-    for (const auto& more : {explorer_fields(), paper_fields()}) all.insert(all.end(), more.begin(), more.end());
+    const auto add = [&](std::vector<AnyOptionField> more, std::string_view preset) {
+      for (AnyOptionField& field : more) {
+        std::visit([&](auto& option) { option.preset = preset; }, field);
+        all.push_back(std::move(field));
+      }
+    };
+    add(explorer_fields(), kExplorerPreset);
+    add(paper_fields(), kPaperPreset);
     return all;
   }();
   return fields;
@@ -157,15 +151,18 @@ std::string flag_of(const std::string& key) {
 TrainOptions default_options(const std::string& preset) {
   one_of({kExplorerPreset, kPaperPreset})("--preset", preset);
   TrainOptions options;
-  for_each_option([&](const auto& option) {
-    if (const auto& value = option.defaults.of(preset)) options.*option.member = *value;
-  });
+  if (preset == kExplorerPreset) return options;
+  options.preset = kPaperPreset;
+  options.batch_size = 32;
+  options.replay_capacity = 100'000;
+  options.learning_rate = 1e-3;
+  options.checkpoint_every = 100;
   return options;
 }
 
 void validate(const TrainOptions& options) {
   for_each_option([&](const auto& option) {
-    if (option.defaults.of(options.preset)) option.check(flag_of(option.key), options.*option.member);
+    if (option.is_of(options.preset)) option.check(flag_of(option.key), options.*option.member);
   });
   // The paper learns once there are more transitions than a batch has.
   const bool paper = options.preset == kPaperPreset;
@@ -183,7 +180,7 @@ void validate(const TrainOptions& options) {
 Json config_json(const TrainOptions& options) {
   Json json;
   for_each_option([&](const auto& option) {
-    if (option.defaults.of(options.preset)) json[option.key] = options.*option.member;
+    if (option.is_of(options.preset)) json[option.key] = options.*option.member;
   });
   return json;
 }
@@ -207,7 +204,7 @@ TrainOptions parse_options(const Json& given, const std::string& source) {
   for (const auto& item : given.items()) {
     bool taken = false;
     for_each_option([&](const auto& option) {
-      if (option.key != item.key() || !option.defaults.of(preset)) return;
+      if (option.key != item.key() || !option.is_of(preset)) return;
       read(item.key(), options.*option.member);
       taken = true;
     });
@@ -225,7 +222,7 @@ TrainOptions read_config(const std::filesystem::path& path) {
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   TrainOptions options = parse_options(json, source);
   for_each_option([&](const auto& option) {
-    if (!option.defaults.of(options.preset) || json.contains(option.key) || option.key == kAddedLater) return;
+    if (!option.is_of(options.preset) || json.contains(option.key) || option.key == kAddedLater) return;
     throw Error({.what = "missing key " + in_quotes(option.key), .where = source});
   });
   return options;

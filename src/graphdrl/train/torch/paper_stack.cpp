@@ -381,10 +381,9 @@ std::unique_ptr<PaperLearner> DeviceLearners::make(const std::string& device, co
   return std::make_unique<StackedLearner>(std::make_unique<PaperStack>(torch::Device(device), 1), options, rng);
 }
 
-// An explorer's training names no device: it runs on the CPU.
 std::vector<std::unique_ptr<LearnerSource>> DeviceLearners::make_together(const std::string& device,
                                                                           int trainings) const {
-  if (device.empty() || device == "cpu") return {};
+  if (device == "cpu") return {};
   return stack_sources(device, trainings);
 }
 
