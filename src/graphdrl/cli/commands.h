@@ -1,9 +1,11 @@
 // The subcommands of `graphdrl`, one per source file beside this one.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "graphdrl/train/paper_learner.h"
+
+namespace CLI {
+class App;
+}
 
 namespace graphdrl {
 

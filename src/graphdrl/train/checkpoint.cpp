@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/json.h"
@@ -83,6 +84,18 @@ Json Checkpoint::json(const std::string& key) const {
   require_shallow_json(text->second, source());
   return nlohmann::ordered_json::parse(text->second, nullptr, /*allow_exceptions=*/false);
 }
+
+template <typename T>
+void read_number(const Json& json, const char* key, const Checkpoint& checkpoint, T& value) {
+  const bool good =
+      json.is_object() && json.contains(key) &&
+      (std::is_integral_v<T> ? json[key].is_number_unsigned() && json[key].template get<std::uint64_t>() <= INT64_MAX
+                             : json[key].is_number());
+  if (!good) checkpoint.fail("not a checkpoint: no number '" + std::string(key) + "'");
+  json[key].get_to(value);
+}
+template void read_number(const Json&, const char*, const Checkpoint&, std::int64_t&);
+template void read_number(const Json&, const char*, const Checkpoint&, double&);
 
 TrainingProgress Checkpoint::progress() const {
   const Json found = json(kProgressKey);

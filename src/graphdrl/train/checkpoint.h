@@ -8,7 +8,7 @@
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -119,14 +119,7 @@ class Checkpoint {
 };
 
 // The number under a key. Throws Error where there is none, or one below 0 that counts things.
-template <typename T>
-void read_number(const nlohmann::ordered_json& json, const char* key, const Checkpoint& checkpoint, T& value) {
-  const bool good =
-      json.is_object() && json.contains(key) &&
-      (std::is_integral_v<T> ? json[key].is_number_unsigned() && json[key].template get<std::uint64_t>() <= INT64_MAX
-                             : json[key].is_number());
-  if (!good) checkpoint.fail("not a checkpoint: no number '" + std::string(key) + "'");
-  json[key].get_to(value);
-}
+template <typename T>  // std::int64_t or double
+void read_number(const nlohmann::ordered_json& json, const char* key, const Checkpoint& checkpoint, T& value);
 
 }  // namespace graphdrl

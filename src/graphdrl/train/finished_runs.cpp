@@ -1,5 +1,6 @@
 #include "graphdrl/train/finished_runs.h"
 
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 

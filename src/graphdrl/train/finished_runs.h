@@ -1,7 +1,7 @@
 // Trainings that are done, read back: what they were told, how they went, where their policies are.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/budget.h"
