@@ -1,9 +1,12 @@
 // All commands with their options, as data: for completions and manual pages.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace graphdrl {
 

@@ -1,9 +1,11 @@
 // The subcommands of `graphdrl`, one per source file beside this one. `learners` must outlive the app.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "graphdrl/train/learner_source.h"
+
+namespace CLI {
+class App;
+}
 
 namespace graphdrl {
 

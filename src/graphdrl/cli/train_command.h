@@ -1,12 +1,15 @@
 // `graphdrl train`, as both programs run it.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "graphdrl/train/learner_source.h"
+
+namespace CLI {
+class App;
+}
 
 namespace graphdrl {
 
