@@ -26,7 +26,7 @@ class End {
 };
 
 // The most steps of any walk. A budget pays for a multiple of that where edges cost next to nothing; walks stay in
-// memory, so they end here.
+// memory, so they end here. Moves that cost nothing end an episode before [Episode::too_long].
 inline constexpr std::int64_t kMaxSteps = 100'000'000;
 
 // Visit what is worth most within a budget. Of walks worth the same, the cheaper one is better.
