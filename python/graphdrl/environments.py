@@ -1,4 +1,4 @@
-"""Environments for Gymnasium; importing this module registers them.
+"""Environments for Gymnasium; `import graphdrl` registers their names where Gymnasium is installed.
 
 - `GraphDRL/Grid-v0`: the paper's decision process, directions on a grid.
 - `GraphDRL/Graph-v0`: any graph, an action is a neighbour.
@@ -660,12 +660,3 @@ def _picture(world: World, walk: NDArray[np.int32]) -> NDArray[np.uint8]:
     picture = cells.reshape(rows, columns, 3).repeat(_CELL_PIXELS, axis=0).repeat(_CELL_PIXELS, axis=1)
     picture[::_CELL_PIXELS] = picture[:, ::_CELL_PIXELS] = 225
     return picture
-
-
-for _id, _name in ((GRID_ID, "Grid"), (GRAPH_ID, "Graph"), (FIRST_VISIT_ID, "FirstVisit")):
-    if _id not in gymnasium.registry:
-        gymnasium.register(
-            _id,
-            entry_point=f"graphdrl.environments:{_name}Env",
-            vector_entry_point=f"graphdrl.environments:{_name}VectorEnv",
-        )

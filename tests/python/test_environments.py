@@ -2,6 +2,8 @@
 
 import inspect
 import os
+import subprocess
+import sys
 import warnings
 
 import graphdrl
@@ -120,6 +122,19 @@ def test_moves_that_are_free_and_lead_nowhere_new_are_truncated():
         *_, terminated, truncated, _ = env.step(0)
         steps, over = steps + 1, terminated or truncated
     assert truncated and not terminated and steps == 1 + 10 * 3
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import graphdrl, gymnasium; gymnasium.make('GraphDRL/Grid-v0')",
+        "import gymnasium, graphdrl; gymnasium.make_vec('GraphDRL/Graph-v0', num_envs=2)",
+        "import gymnasium; gymnasium.make('graphdrl:GraphDRL/FirstVisit-v0')",
+        "import sys; sys.modules['gymnasium'] = None; import graphdrl",  # without Gymnasium
+    ],
+)
+def test_gymnasium_knows_the_names(line):
+    subprocess.run([sys.executable, "-c", line], check=True)
 
 
 def test_options_are_shown_one_by_one():
