@@ -25,7 +25,7 @@ def main():
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 1024
     for copy in (True, False):
         envs = gymnasium.make_vec("GraphDRL/Grid-v0", num_envs=count, map="paper:a", budget=BUDGET, copy=copy)
-        plain = PlainGrid(np.array(envs.unwrapped.world().blocked), BUDGET, full_coverage=False)
+        plain = PlainGrid(np.array(envs.unwrapped.world().blocked), BUDGET)
         random = np.random.default_rng(1)
         actions = random.integers(4, size=(40 * (BUDGET + 1), count))
         _, infos = envs.reset(seed=1)

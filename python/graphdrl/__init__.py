@@ -3,6 +3,7 @@
 from ._core import FAMILIES, Error, State, __version__, threads
 from .planning import Plan, evaluate, plan, set_threads, upper_bound
 from .policies import Explorer, FirstVisits, PaperNetwork, Policy
+from .registration import register_environments
 from .training import Run, resume, train
 from .world import World
 
@@ -26,3 +27,5 @@ __all__ = [
     "train",
     "upper_bound",
 ]
+
+register_environments()

@@ -53,6 +53,12 @@ def flag(value: Any, name: str) -> bool:
     return bool(value)
 
 
+def one_of(choices: tuple[str, ...], value: Any, name: str) -> None:
+    """A text among some."""
+    if value not in choices:
+        raise wrong(name, " or ".join(choices), value)
+
+
 def text(value: Any, name: str) -> str:
     """A text that UTF-8 can write."""
     if not isinstance(value, str):

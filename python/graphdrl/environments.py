@@ -1,4 +1,4 @@
-"""Environments for Gymnasium; importing this module registers them.
+"""Environments for Gymnasium; `import graphdrl` registers their names where Gymnasium is installed.
 
 - `GraphDRL/Grid-v0`: the paper's decision process, directions on a grid.
 - `GraphDRL/Graph-v0`: any graph, an action is a neighbour.
@@ -7,6 +7,9 @@
 
 from __future__ import annotations
 
+import inspect
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import gymnasium
@@ -17,7 +20,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Error
-from .checks import LARGEST_INT, flag, listed, shown, whole_number, wrong
+from .checks import LARGEST_INT, flag, listed, one_of, whole_number, wrong
 from .world import Budget, Node, World, array_of, budget_text, flat_of
 
 __all__ = [
@@ -35,66 +38,74 @@ __all__ = [
 GRID_ID = "GraphDRL/Grid-v0"
 """What `gymnasium.make` and `make_vec` know GridEnv and GridVectorEnv by."""
 GRAPH_ID = "GraphDRL/Graph-v0"
-"""The same of GraphEnv and GraphVectorEnv."""
+"""What they know GraphEnv and GraphVectorEnv by."""
 FIRST_VISIT_ID = "GraphDRL/FirstVisit-v0"
-"""The same of FirstVisitEnv and FirstVisitVectorEnv."""
+"""What they know FirstVisitEnv and FirstVisitVectorEnv by."""
 
 _REWARDS = ("visit_penalty", "coverage_gain")
 _OBSERVATIONS = ("flat", "graph")
 _RENDER_MODES = ("ansi", "rgb_array", "human")
 _FRAMES_PER_SECOND = 8
 _CELL_PIXELS = 24
-_GRID_SIZE = 5
-_GRAPH_SIZE = 20
 _COLOURS = {"free": (255, 255, 255), "blocked": (60, 60, 70), "visited": (150, 200, 230), "current": (220, 90, 40)}
 
 
-def _require(value: str, choices: tuple[str, ...], what: str) -> None:
-    if value not in choices:
-        raise wrong(what, " or ".join(choices), value)
+@dataclass(frozen=True)
+class _Options:
+    """What every environment takes. The classes of environments say what each option means."""
 
+    map: str | World | None = None
+    budget: Budget = "1.1x"
+    reward: str = "visit_penalty"
+    start: Node | None = None
+    family: str | None = None
+    size: int | None = None
+    render_mode: str | None = None
+    usual_size: ClassVar[int] = 20
+    # Options of those on graphs.
+    return_to_start = weighted = directed = False
+    observation = "flat"
 
-class _Setting:
-    """Where episodes take place, as all environments take it."""
+    @cached_property
+    def world(self) -> World | None:
+        """The world of all episodes; None of random ones."""
+        if self.family is not None:
+            return None
+        if isinstance(self.map, World):
+            return self.map
+        name = "paper:a" if self.map is None else self.map
+        if not isinstance(name, str):
+            raise wrong("map", "a World or the name of a map", name)
+        return World.from_file(name)
 
-    def __init__(
-        self,
-        map: str | World | None,
-        family: str | None,
-        size: int | None,
-        usual_size: int,
-        weighted: bool,
-        directed: bool,
-        budget: Budget,
-        reward: str,
-        start: Node | None,
-        return_to_start: bool,
-    ) -> None:
-        _require(reward, _REWARDS, "reward")
-        if family is not None and map is not None:
+    def for_core(self, count: int, restarts: bool) -> _core.EpisodesOptions:
+        """The same, checked, for `count` episodes."""
+        one_of(_REWARDS, self.reward, "reward")
+        if self.render_mode is not None:
+            one_of(_RENDER_MODES, self.render_mode, "render mode")
+        one_of(_OBSERVATIONS, self.observation, "observation")
+        if self.family is not None and self.map is not None:
             raise Error("bad map: expected a map or a family of random worlds, got both")
-        weighted, directed = flag(weighted, "weighted"), flag(directed, "directed")
-        if family is None:
-            for name, given in (("size", size is not None), ("weighted", weighted), ("directed", directed)):
+        weighted, directed = flag(self.weighted, "weighted"), flag(self.directed, "directed")
+        if self.family is None:
+            for name, given in (("size", self.size is not None), ("weighted", weighted), ("directed", directed)):
                 if given:
                     raise Error(f"bad {name}: a map has its own: expected a family of random worlds with it")
-        size = whole_number(usual_size if size is None else size, "size", 1, LARGEST_INT)
-        self.world: World | None = None
-        if family is None:
-            self.world = _world_of("paper:a" if map is None else map)
-        elif start is not None:
+        elif self.start is not None:
             raise Error("bad start: random worlds have none to choose")
-        self.budget = budget_text(budget)
-        self.state = (
-            None if self.world is None else self.world._core, (family or "", size, weighted, directed), self.budget,
-            -1 if start is None or self.world is None else self.world.number(start), reward == "coverage_gain",
-            flag(return_to_start, "return_to_start"),
-        )  # fmt: skip
-        if self.world is not None:
-            self.nodes = self.world.node_count
-        else:
-            self.nodes = size * size if family in _core.GRID_FAMILIES else size
-        self.size = size
+        return _core.EpisodesOptions(
+            world=None if self.world is None else self.world._core,
+            family=self.family or "",
+            size=whole_number(self.usual_size if self.size is None else self.size, "size", 1, LARGEST_INT),
+            weighted=weighted,
+            directed=directed,
+            budget=budget_text(self.budget),
+            start=-1 if self.start is None or self.world is None else self.world.number(self.start),
+            coverage_gain=self.reward == "coverage_gain",
+            return_to_start=flag(self.return_to_start, "return_to_start"),
+            count=count,
+            restarts=restarts,
+        )
 
     def start_of(self, options: dict[str, Any] | None, known: tuple[str, ...]) -> int:
         """The number of the node that the options of a `reset` name, -1 without one; `known`: all options there are."""
@@ -111,121 +122,118 @@ class _Setting:
             raise Error("bad start: random worlds have none to choose")
         return self.world.number(options["start"])
 
+    def make(self, count: int, restarts: bool) -> _Kind:
+        """The episodes, and their spaces."""
+        raise NotImplementedError
 
-def _world_of(map: str | World) -> World:
-    if isinstance(map, World):
-        return map
-    if isinstance(map, str):
-        return World.from_file(map)
-    raise wrong("map", "a World or the name of a map", map)
+
+@dataclass(frozen=True)
+class GridOptions(_Options):
+    """What GridEnv takes."""
+
+    budget: Budget = 25
+    usual_size: ClassVar[int] = 5
+
+    def make(self, count: int, restarts: bool) -> _Kind:
+        if self.family is not None and self.family not in _core.GRID_FAMILIES:
+            raise wrong("family", ", ".join(_core.GRID_FAMILIES), self.family)
+        episodes = _core.GridEpisodes(self.for_core(count, restarts))
+        highest = np.resize(episodes.highest_features, episodes.observations.shape[1])
+        return _Kind(self, episodes, spaces.Box(np.float32(0), highest, dtype=np.float32))
+
+
+@dataclass(frozen=True)
+class _OnGraphs(_Options):
+    """What the environments on graphs take."""
+
+    return_to_start: bool = False
+    weighted: bool = False
+    directed: bool = False
+    observation: str = "flat"
+
+    def kind(self, episodes: Any, low: float, high: float, node_features: int) -> _Kind:
+        flat = spaces.Box(low, high, episodes.observations.shape[1:], np.float32)
+        nodes = spaces.Box(low, high, (node_features,), np.float32)
+        return _Kind(self, episodes, flat, spaces.Graph(nodes, spaces.Box(0, np.inf, (1,), np.float32)))
+
+
+@dataclass(frozen=True)
+class GraphOptions(_OnGraphs):
+    """What GraphEnv takes."""
+
+    max_neighbours: int | None = None
+
+    def make(self, count: int, restarts: bool) -> _Kind:
+        most = 0  # as many as the worlds need
+        if self.max_neighbours is not None:
+            most = whole_number(self.max_neighbours, "max_neighbours", 1, 1_000_000)
+        episodes = _core.GraphEpisodes(self.for_core(count, restarts), most)
+        return self.kind(episodes, 0, 1, _core.GRAPH_NODE_FEATURES)
+
+
+@dataclass(frozen=True)
+class FirstVisitOptions(_OnGraphs):
+    """What FirstVisitEnv takes."""
+
+    reward: str = "coverage_gain"
+    max_visits: int = 16
+
+    def make(self, count: int, restarts: bool) -> _Kind:
+        most = whole_number(self.max_visits, "max_visits", 1, 96)
+        episodes = _core.FirstVisitEpisodes(self.for_core(count, restarts), most)
+        return self.kind(episodes, -16, 16, _core.EXPLORER_NODE_FEATURES)
 
 
 class _Kind:
-    """The episodes of one kind of environment, and their spaces."""
+    """The episodes of an environment, and their spaces."""
 
-    def __init__(self, setting: _Setting, episodes: Any, observations: Any, action_count: int, masks: bool) -> None:
-        self.setting = setting
+    def __init__(self, options: _Options, episodes: Any, flat: spaces.Box, graph: spaces.Graph | None = None) -> None:
+        self.options = options
         self.episodes = episodes
-        self.observation_space = observations
-        self.action_space = spaces.Discrete(action_count)
-        self.masks = masks
-        self.graph_space: spaces.Graph | None = None
+        self.observation_space = flat
+        self.graph_space = graph
+        self.action_space = spaces.Discrete(episodes.action_masks.shape[1])
 
     def seed(self, index: int, random: np.random.Generator) -> None:
         self.episodes.seed(index, int(random.integers(2**63)))
 
     def world(self, index: int) -> World:
-        if self.setting.world is not None:
-            return self.setting.world
-        return World(self.episodes.world(index))
+        return World(self.episodes.world(index)) if self.options.world is None else self.options.world
 
     def told(self) -> dict[str, NDArray[Any]]:
-        """What infos say, of all environments."""
+        """What infos say, of all environments. Directions have neither masks nor targets."""
         told = {"visited": self.episodes.visited, "position": self.episodes.positions}
-        if self.masks:
+        if self.graph_space is not None:
             told |= {"action_mask": self.episodes.action_masks, "targets": self.episodes.targets}
         return told
 
 
-def _grid_kind(
-    count: int, restarts: bool, end_at_full_coverage: bool, punish_blocked_by_visits: bool, **options: Any
-) -> _Kind:
-    setting = _Setting(usual_size=_GRID_SIZE, weighted=False, directed=False, return_to_start=False, **options)
-    family, size = options["family"], setting.size
-    if setting.world is not None:
-        if setting.world.shape is None:
-            raise Error(f"{setting.world.name}: directions need a grid map")
-        rows, columns = setting.world.shape
-        budget = _core.budget_in(setting.world._core, setting.budget)
-    else:
-        if family not in _core.GRID_FAMILIES:
-            raise Error(f"bad family: expected {', '.join(_core.GRID_FAMILIES)}, got {shown(family)}")
-        rows = columns = size
-        budget = _core.budget_in(World.from_grid(np.zeros((size, size), bool))._core, setting.budget)
-    episodes = _core.GridEpisodes(
-        setting.state, flag(end_at_full_coverage, "end_at_full_coverage"),
-        flag(punish_blocked_by_visits, "punish_blocked_by_visits"), count, restarts, setting.nodes,
-    )  # fmt: skip
-    most = [max(rows - 1, 1), max(columns - 1, 1), 1, budget + 1, 1, 4, 1]
-    box = spaces.Box(np.float32(0), np.tile(np.array(most, np.float32), setting.nodes), dtype=np.float32)
-    return _Kind(setting, episodes, box, 4, masks=False)
+class _WithOptions:
+    """A class whose constructor takes options; `help` and the reference show them one by one."""
+
+    _options: ClassVar[type[_Options]]
+    _others: ClassVar[tuple[inspect.Parameter, ...]] = ()
+
+    def __init_subclass__(cls, options: type[_Options] | None = None) -> None:
+        super().__init_subclass__()
+        if options is not None:
+            cls._options = options
+            parameters = [*cls._others, *inspect.signature(options, eval_str=True).parameters.values()]
+            cls.__signature__ = inspect.Signature(sorted(parameters, key=lambda parameter: parameter.kind))
 
 
-def _graph_kind(count: int, restarts: bool, max_neighbours: int | None, **options: Any) -> _Kind:
-    setting = _Setting(usual_size=_GRAPH_SIZE, **options)
-    if max_neighbours is None:
-        if setting.world is not None:
-            max_neighbours = max(_degree_of(setting.world), 1)
-        else:
-            max_neighbours = 4 if options["family"] in _core.GRID_FAMILIES else max(setting.nodes - 1, 1)
-    max_neighbours = whole_number(max_neighbours, "max_neighbours", 1, 1_000_000)
-    episodes = _core.GraphEpisodes(setting.state, count, restarts, setting.nodes, max_neighbours)
-    box = spaces.Box(0, 1, episodes.observations.shape[1:], np.float32)
-    kind = _Kind(setting, episodes, box, max_neighbours, masks=True)
-    kind.graph_space = spaces.Graph(
-        spaces.Box(0, 1, (_core.GRAPH_NODE_FEATURES,), np.float32), spaces.Box(0, np.inf, (1,), np.float32)
-    )
-    return kind
-
-
-def _first_visit_kind(count: int, restarts: bool, max_visits: int, **options: Any) -> _Kind:
-    setting = _Setting(usual_size=_GRAPH_SIZE, **options)
-    max_visits = whole_number(max_visits, "max_visits", 1, 96)
-    episodes = _core.FirstVisitEpisodes(setting.state, count, restarts, max_visits)
-    box = spaces.Box(-16, 16, episodes.observations.shape[1:], np.float32)
-    kind = _Kind(setting, episodes, box, max_visits, masks=True)
-    kind.graph_space = spaces.Graph(
-        spaces.Box(-16, 16, (_core.EXPLORER_NODE_FEATURES,), np.float32), spaces.Box(0, np.inf, (1,), np.float32)
-    )
-    return kind
-
-
-def _degree_of(world: World) -> int:
-    """The most neighbours that a node has, obstacles aside."""
-    ends, _ = world.edges()
-    free = ~world.blocked.ravel()
-    ends = ends[free[ends].all(axis=1)]
-    degrees = np.bincount(ends[:, 0], minlength=1)
-    if not world.directed:
-        size = world.node_count
-        degrees = np.bincount(ends[:, 0], minlength=size) + np.bincount(ends[:, 1], minlength=size)
-    return int(degrees.max(initial=0))
-
-
-class _Env(gymnasium.Env[Any, np.int64]):
+class _Env(_WithOptions, gymnasium.Env[Any, np.int64]):
     """What the single environments share."""
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": list(_RENDER_MODES), "render_fps": _FRAMES_PER_SECOND}
 
-    def __init__(self, kind: _Kind, observation: str, render_mode: str | None) -> None:
-        if render_mode is not None:
-            _require(render_mode, _RENDER_MODES, "render mode")
-        _require(observation, _OBSERVATIONS, "observation")
-        self._kind = kind
-        self._as_graph = observation == "graph"
-        self.observation_space = kind.graph_space if self._as_graph else kind.observation_space
-        self.action_space = kind.action_space
-        self.render_mode = render_mode
+    def __init__(self, *args: Any, **named: Any) -> None:
+        options = self._options(*args, **named)
+        self._kind = options.make(count=1, restarts=False)
+        self._as_graph = options.observation == "graph"
+        self.observation_space = self._kind.graph_space if self._as_graph else self._kind.observation_space
+        self.action_space = self._kind.action_space
+        self.render_mode = options.render_mode
         self._begun = False
         self._window: _Window | None = None
 
@@ -252,7 +260,7 @@ class _Env(gymnasium.Env[Any, np.int64]):
         Raises:
             Error: a blocked or missing start, a start for random worlds, options other than these.
         """
-        start = self._kind.setting.start_of(options, ("start",))
+        start = self._kind.options.start_of(options, ("start",))
         super().reset(seed=seed)
         if seed is not None or not self._begun:
             self._kind.seed(0, self.np_random)
@@ -342,29 +350,39 @@ class _Env(gymnasium.Env[Any, np.int64]):
         return info
 
 
-class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], NDArray[Any]]):
+class _VectorEnv(_WithOptions, gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int64], NDArray[Any]]):
     """What the vector environments share: all episodes are stepped by one call.
 
     Equal to SyncVectorEnv's, with the same seeds, step by step: an episode that is over begins anew with the next step.
-    With `copy=False` observations are one array that every step writes anew. All else is always a copy.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": []}
     if hasattr(gymnasium.vector, "AutoresetMode"):  # from Gymnasium 1.1 on; before, there was no other
         metadata["autoreset_mode"] = gymnasium.vector.AutoresetMode.NEXT_STEP
 
-    def __init__(self, kind: _Kind, num_envs: int, copy: bool) -> None:
-        copy = flag(copy, "copy")
-        self._kind = kind
+    _others = (
+        inspect.Parameter("num_envs", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=1, annotation=int),
+        inspect.Parameter("copy", inspect.Parameter.KEYWORD_ONLY, default=True, annotation=bool),
+    )
+
+    def __init__(self, num_envs: int = 1, *args: Any, copy: bool = True, **named: Any) -> None:
+        options = self._options(*args, **named)
+        for name, usual in (("observation", "flat"), ("render_mode", None)):
+            if getattr(options, name) != usual:
+                raise Error(
+                    f"bad {name}: make_vec gives flat boxes and no pictures, single environments have them: "
+                    "vectorization_mode='sync' takes them"
+                )
+        self.num_envs = whole_number(num_envs, "num_envs", 1, LARGEST_INT)
+        self._copy = flag(copy, "copy")
+        self._kind = kind = options.make(self.num_envs, restarts=True)
         self._begun = False
-        self.num_envs = num_envs
         self.single_observation_space = kind.observation_space
         self.single_action_space = kind.action_space
-        self.observation_space = batch_space(kind.observation_space, num_envs)
-        self.action_space = batch_space(kind.action_space, num_envs)
-        self._copy = copy
-        self._all = np.ones(num_envs, bool)
-        self._random: list[np.random.Generator | None] = [None] * num_envs
+        self.observation_space = batch_space(kind.observation_space, self.num_envs)
+        self.action_space = batch_space(kind.action_space, self.num_envs)
+        self._all = np.ones(self.num_envs, bool)
+        self._random: list[np.random.Generator | None] = [None] * self.num_envs
         episodes = kind.episodes
         self._observed = episodes.observations
         self._outcome = (episodes.rewards, episodes.terminated, episodes.truncated)
@@ -386,7 +404,7 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
             Error: a number of seeds other than V, a blocked or missing start, a start for random worlds, options other
                 than these.
         """
-        start = self._kind.setting.start_of(options, ("start", "reset_mask"))
+        start = self._kind.options.start_of(options, ("start", "reset_mask"))
         mask = (options or {}).get("reset_mask", self._all)
         mask = flat_of(mask, bool, "reset_mask", "b", self.num_envs)
         if isinstance(seed, (int, np.integer)):
@@ -451,18 +469,7 @@ class _VectorEnv(gymnasium.vector.VectorEnv[NDArray[np.float32], NDArray[np.int6
         return infos
 
 
-def _vector_count(num_envs: int, observation: str, render_mode: str | None) -> int:
-    """How many environments. Refuses what single ones alone can do."""
-    for name, given in (("observation", observation != "flat"), ("render_mode", render_mode is not None)):
-        if given:
-            raise Error(
-                f"bad {name}: make_vec gives flat boxes and no pictures, single environments have them: "
-                "vectorization_mode='sync' takes them"
-            )
-    return whole_number(num_envs, "num_envs", 1, LARGEST_INT)
-
-
-class GridEnv(_Env):
+class GridEnv(_Env, options=GridOptions):
     """One explorer on a grid map, as in the paper: visit as many cells as the budget allows. N: how many cells.
 
     Actions: 0 left, 1 up, 2 right, 3 down. A move into an obstacle or off the map costs a step and stays put.
@@ -477,12 +484,8 @@ class GridEnv(_Env):
 
     Args:
         map: a World or the name of a map; by default `paper:a`.
-        budget: steps, or a text as `"1.1x"`.
+        budget: steps, or a text as `"1.1x"`: times the number of free cells.
         reward: `visit_penalty` or `coverage_gain`.
-        end_at_full_coverage: an episode terminates at full coverage, with a bonus of 1. Differs from the paper: its
-            author's code does so.
-        punish_blocked_by_visits: a blocked move costs a further 0.1 per visit of the cell before it, with
-            `visit_penalty`. Differs from the paper: its author's code does so.
         start: a cell; by default a random free one.
         family: of random worlds instead of `map`, a new one with every `reset`: a family of grids.
         size: of random worlds: cells a side, by default 5.
@@ -492,62 +495,20 @@ class GridEnv(_Env):
         Error: a map that is no grid, a family of graphs, both a map and a family, a bad value of another option.
     """
 
-    def __init__(
-        self,
-        map: str | World | None = None,
-        budget: Budget = 25,
-        reward: str = "visit_penalty",
-        end_at_full_coverage: bool = False,
-        punish_blocked_by_visits: bool = False,
-        start: Node | None = None,
-        family: str | None = None,
-        size: int | None = None,
-        render_mode: str | None = None,
-    ) -> None:
-        kind = _grid_kind(
-            1, False, end_at_full_coverage, punish_blocked_by_visits, map=map, family=family, size=size, budget=budget,
-            reward=reward, start=start,
-        )  # fmt: skip
-        super().__init__(kind, "flat", render_mode)
 
+class GridVectorEnv(_VectorEnv, options=GridOptions):
+    """Many environments as GridEnv, with its options; `gymnasium.make_vec` makes it.
 
-class GridVectorEnv(_VectorEnv):
-    """Many environments as GridEnv, with its options; `gymnasium.make_vec(id, num_envs)` makes it.
-
-    All episodes are stepped by one call. Steps equal those of Gymnasium's SyncVectorEnv with the same seeds.
+    All episodes are stepped by one call. Steps equal those of Gymnasium's SyncVectorEnv with the same seeds. Graphs and
+    pictures are of single environments alone.
 
     Args:
         num_envs: V, how many.
         copy: if false, observations are one array that every step writes anew. All else is always a copy.
-        render_mode: None; pictures are of single environments.
-
-    Raises:
-        Error: as GridEnv does.
     """
 
-    def __init__(
-        self,
-        num_envs: int = 1,
-        map: str | World | None = None,
-        budget: Budget = 25,
-        reward: str = "visit_penalty",
-        end_at_full_coverage: bool = False,
-        punish_blocked_by_visits: bool = False,
-        start: Node | None = None,
-        family: str | None = None,
-        size: int | None = None,
-        copy: bool = True,
-        render_mode: str | None = None,
-    ) -> None:
-        num_envs = _vector_count(num_envs, "flat", render_mode)
-        kind = _grid_kind(
-            num_envs, True, end_at_full_coverage, punish_blocked_by_visits, map=map, family=family, size=size,
-            budget=budget, reward=reward, start=start,
-        )  # fmt: skip
-        super().__init__(kind, num_envs, copy)
 
-
-class GraphEnv(_Env):
+class GraphEnv(_Env, options=GraphOptions):
     """One explorer on any graph: visit as much as the budget allows, edge by edge. N: nodes, A: actions.
 
     Actions: the neighbours of the current node, in ascending order of their numbers. A masked action leads nowhere or
@@ -566,12 +527,13 @@ class GraphEnv(_Env):
     Reward: `visit_penalty` [paper, eq. 3], where a masked action is a blocked move; or `coverage_gain` [paper, eq. 2]:
     the share of all nodes, or of all prizes, that a first visit brings.
 
-    An episode terminates where nothing can be paid for, or everything is visited. It is never truncated, for what is
-    left of the budget is part of the observation.
+    An episode terminates where nothing can be paid for, or everything is visited. The budget truncates none, for what
+    is left of it is part of the observation. Where edges cost nothing, an episode is truncated after 10 N moves in a
+    row that cost nothing and visit nothing new.
 
     Args:
-        map: as of GridEnv; any World.
-        budget: in units of cost, or a text as `"1.1x"`.
+        map: a World or the name of a map, grid or graph; by default `paper:a`.
+        budget: in units of cost, or a text as `"1.1x"`: times the number of free nodes, in edges of mean cost.
         reward: `visit_penalty` or `coverage_gain`.
         start: a node; by default a random free one.
         return_to_start: the walk must end where it began. Moves that make that too dear are masked.
@@ -587,72 +549,29 @@ class GraphEnv(_Env):
         Error: both a map and a family, a node of more neighbours than A, a bad value of another option.
     """
 
-    def __init__(
-        self,
-        map: str | World | None = None,
-        budget: Budget = "1.1x",
-        reward: str = "visit_penalty",
-        start: Node | None = None,
-        return_to_start: bool = False,
-        family: str | None = None,
-        size: int | None = None,
-        weighted: bool = False,
-        directed: bool = False,
-        max_neighbours: int | None = None,
-        observation: str = "flat",
-        render_mode: str | None = None,
-    ) -> None:
-        kind = _graph_kind(
-            1, False, max_neighbours, map=map, family=family, size=size, weighted=weighted, directed=directed,
-            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
-        )  # fmt: skip
-        super().__init__(kind, observation, render_mode)
 
+class GraphVectorEnv(_VectorEnv, options=GraphOptions):
+    """Many environments as GraphEnv, with its options and flat observations; `gymnasium.make_vec` makes it.
 
-class GraphVectorEnv(_VectorEnv):
-    """Many environments as GraphEnv, with its options and flat observations; see GridVectorEnv.
+    All episodes are stepped by one call. Steps equal those of Gymnasium's SyncVectorEnv with the same seeds. Graphs and
+    pictures are of single environments alone.
 
     Args:
         num_envs: V, how many.
-        copy: as of GridVectorEnv.
-        observation: `flat`; graphs are of single environments.
-        render_mode: None; pictures are of single environments.
-
-    Raises:
-        Error: as GraphEnv does.
+        copy: if false, observations are one array that every step writes anew. All else is always a copy.
     """
 
-    def __init__(
-        self,
-        num_envs: int = 1,
-        map: str | World | None = None,
-        budget: Budget = "1.1x",
-        reward: str = "visit_penalty",
-        start: Node | None = None,
-        return_to_start: bool = False,
-        family: str | None = None,
-        size: int | None = None,
-        weighted: bool = False,
-        directed: bool = False,
-        max_neighbours: int | None = None,
-        copy: bool = True,
-        observation: str = "flat",
-        render_mode: str | None = None,
-    ) -> None:
-        num_envs = _vector_count(num_envs, observation, render_mode)
-        kind = _graph_kind(
-            num_envs, True, max_neighbours, map=map, family=family, size=size, weighted=weighted, directed=directed,
-            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
-        )  # fmt: skip
-        super().__init__(kind, num_envs, copy)
 
-
-class FirstVisitEnv(_Env):
+class FirstVisitEnv(_Env, options=FirstVisitOptions):
     """One explorer on any graph, from first visit to first visit. A: actions.
 
     An action walks to an unvisited node next to visited ones, by the cheapest way through visited ground.
 
-    Actions: the A nearest first visits, nearest first. Infos as of GraphEnv; masked actions cost what they cost there.
+    Actions: the A nearest first visits, nearest first. A masked action leads nowhere. It costs an edge of mean cost and
+    stays put; where that cannot be paid for, it ends the episode.
+
+    Infos: `action_mask`, bool [A]; `targets`, int [A], the number of the node that each action leads to, -1 for
+    nowhere.
 
     Observation `flat`: Box [12 A] of float32 from -16 to 16: of each action 1 where there is one, and what the explorer
     sees of it, 11 features (docs/explorer.md).
@@ -664,81 +583,34 @@ class FirstVisitEnv(_Env):
     Reward: the sum over the walk of GraphEnv's. An episode terminates where no first visit can be paid for.
 
     Args:
-        map: as of GraphEnv.
-        budget: as of GraphEnv.
-        reward: as of GraphEnv.
-        start: as of GraphEnv.
-        return_to_start: as of GraphEnv.
-        family: as of GraphEnv.
-        size: as of GraphEnv.
-        weighted: as of GraphEnv.
-        directed: as of GraphEnv.
+        map: a World or the name of a map, grid or graph; by default `paper:a`.
+        budget: in units of cost, or a text as `"1.1x"`: times the number of free nodes, in edges of mean cost.
+        reward: `visit_penalty` or `coverage_gain`.
+        start: a node; by default a random free one.
+        return_to_start: the walk must end where it began. First visits that make that too dear are left out.
+        family: of random worlds instead of `map`, a new one with every `reset`.
+        size: of random worlds: nodes of a graph, cells a side of a grid; by default 20.
+        weighted: of random graphs: edges cost differently.
+        directed: of random graphs: three edges in ten lead one way only.
         max_visits: A, 1 to 96.
         observation: `flat` or `graph`.
         render_mode: `ansi`, `rgb_array` or `human`.
 
     Raises:
-        Error: as GraphEnv does, and `max_visits` out of range.
+        Error: both a map and a family, `max_visits` out of range, a bad value of another option.
     """
 
-    def __init__(
-        self,
-        map: str | World | None = None,
-        budget: Budget = "1.1x",
-        reward: str = "coverage_gain",
-        start: Node | None = None,
-        return_to_start: bool = False,
-        family: str | None = None,
-        size: int | None = None,
-        weighted: bool = False,
-        directed: bool = False,
-        max_visits: int = 16,
-        observation: str = "flat",
-        render_mode: str | None = None,
-    ) -> None:
-        kind = _first_visit_kind(
-            1, False, max_visits, map=map, family=family, size=size, weighted=weighted, directed=directed,
-            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
-        )  # fmt: skip
-        super().__init__(kind, observation, render_mode)
 
+class FirstVisitVectorEnv(_VectorEnv, options=FirstVisitOptions):
+    """Many environments as FirstVisitEnv, with its options and flat observations; `gymnasium.make_vec` makes it.
 
-class FirstVisitVectorEnv(_VectorEnv):
-    """Many environments as FirstVisitEnv, with its options and flat observations; see GridVectorEnv.
+    All episodes are stepped by one call. Steps equal those of Gymnasium's SyncVectorEnv with the same seeds. Graphs and
+    pictures are of single environments alone.
 
     Args:
         num_envs: V, how many.
-        copy: as of GridVectorEnv.
-        observation: `flat`; graphs are of single environments.
-        render_mode: None; pictures are of single environments.
-
-    Raises:
-        Error: as FirstVisitEnv does.
+        copy: if false, observations are one array that every step writes anew. All else is always a copy.
     """
-
-    def __init__(
-        self,
-        num_envs: int = 1,
-        map: str | World | None = None,
-        budget: Budget = "1.1x",
-        reward: str = "coverage_gain",
-        start: Node | None = None,
-        return_to_start: bool = False,
-        family: str | None = None,
-        size: int | None = None,
-        weighted: bool = False,
-        directed: bool = False,
-        max_visits: int = 16,
-        copy: bool = True,
-        observation: str = "flat",
-        render_mode: str | None = None,
-    ) -> None:
-        num_envs = _vector_count(num_envs, observation, render_mode)
-        kind = _first_visit_kind(
-            num_envs, True, max_visits, map=map, family=family, size=size, weighted=weighted, directed=directed,
-            budget=budget, reward=reward, start=start, return_to_start=return_to_start,
-        )  # fmt: skip
-        super().__init__(kind, num_envs, copy)
 
 
 class _Window:
@@ -788,12 +660,3 @@ def _picture(world: World, walk: NDArray[np.int32]) -> NDArray[np.uint8]:
     picture = cells.reshape(rows, columns, 3).repeat(_CELL_PIXELS, axis=0).repeat(_CELL_PIXELS, axis=1)
     picture[::_CELL_PIXELS] = picture[:, ::_CELL_PIXELS] = 225
     return picture
-
-
-for _id, _name in ((GRID_ID, "Grid"), (GRAPH_ID, "Graph"), (FIRST_VISIT_ID, "FirstVisit")):
-    if _id not in gymnasium.registry:
-        gymnasium.register(
-            _id,
-            entry_point=f"graphdrl.environments:{_name}Env",
-            vector_entry_point=f"graphdrl.environments:{_name}VectorEnv",
-        )

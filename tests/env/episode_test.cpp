@@ -232,5 +232,34 @@ TEST(Episode, ForgivesTheRoundingOfSums) {
   EXPECT_TRUE(episode.done());
 }
 
+// 0, 1 and 2 are joined at no cost; the budget does not reach 3.
+World free_ring(double cost) {
+  const std::vector<Edge> edges = {{0, 1, cost}, {1, 2, cost}, {2, 0, cost}, {2, 3, 7}};
+  return World("ring", Graph::from_edges(4, edges), std::vector<bool>(4));
+}
+
+TEST(Episode, OfFreeMovesThatVisitNothingNewEnds) {
+  const World world = free_ring(0);
+  Episode episode(world, {.budget = 3, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  int steps = 0;
+  for (; !episode.done(); ++steps) {
+    ASSERT_LT(steps, 1000);
+    episode.step(0);  // 1, 0, 1, 0 …
+  }
+  EXPECT_TRUE(episode.too_long());
+  EXPECT_EQ(steps, 1 + 4 * kFreeMovesPerNode);
+  episode.step(episode.observation().action_to(2));  // a walk that is given goes on
+  EXPECT_EQ(episode.visited_count(), 3);
+  EXPECT_FALSE(episode.done());
+}
+
+TEST(Episode, OfMovesThatCostEndsByItsBudgetAlone) {
+  Episode episode(free_ring(0.001), {.budget = 3, .action_space = ActionSpace::kNeighbours});
+  episode.reset(0);
+  for (; !episode.done(); episode.step(0)) ASSERT_FALSE(episode.too_long());
+  EXPECT_EQ(episode.walk().size(), 3001U);
+}
+
 }  // namespace
 }  // namespace graphdrl

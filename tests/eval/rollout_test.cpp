@@ -55,5 +55,20 @@ TEST(PlanBySteps, EndsByTheCheapestWay) {
   EXPECT_EQ(plan.cost, 4);
 }
 
+TEST(RollOut, EndsWhereMovesAreFree) {
+  const std::vector<Edge> edges = {{0, 1, 0}, {1, 2, 0}, {2, 3, 7}};
+  const World world("free", Graph::from_edges(4, edges), std::vector<bool>(4));
+  const EpisodeOptions options{.budget = 3, .end = End::at_start(), .action_space = ActionSpace::kNeighbours};
+  for (const char* name : {"random", "random-walk"}) {
+    const auto policy = make_policy(name, 1);
+    for (const RolloutResult& result : roll_out(Episode(world, options), world.valid_nodes(), *policy)) {
+      EXPECT_LT(result.walk.size(), 200U) << name;
+    }
+    const Plan plan = plan_by_steps(world, Task(world, 0, 3, End::at_start()), *policy);
+    EXPECT_EQ(plan.visited, 3) << name;
+    EXPECT_EQ(plan.walk.back(), 0) << name;
+  }
+}
+
 }  // namespace
 }  // namespace graphdrl

@@ -106,7 +106,7 @@ def test_docstrings_name_every_parameter_of_a_constructor(name):
         single = name.replace("VectorEnv", "Env")
         assert f"as {single.rpartition('.')[2]}, with its options" in docs[0]
         docs.append(EVERYTHING[single].__doc__)
-    require_parameters(cls.__init__, "\n".join(filter(None, docs)))
+    require_parameters(cls, "\n".join(filter(None, docs)))
 
 
 def require_parameters(function, doc):

@@ -1,6 +1,9 @@
 """The environments for Gymnasium, beside Gymnasium's own tools and a plain environment in NumPy."""
 
+import inspect
 import os
+import subprocess
+import sys
 import warnings
 
 import graphdrl
@@ -17,7 +20,8 @@ FIRST_VISIT = "GraphDRL/FirstVisit-v0"
 SETTINGS = [
     (GRID, {}),
     (GRID, {"reward": "coverage_gain", "map": "paper:j"}),
-    (GRID, {"end_at_full_coverage": True, "map": "paper:j", "budget": 7}),
+    (GRID, {"map": "paper:j", "budget": 7}),
+    (GRID, {"family": "open", "size": 5, "budget": "0.6x"}),
     (GRID, {"family": "obstacles", "size": 6, "budget": "0.5x"}),
     (GRAPH, {}),
     (GRAPH, {"map": graphdrl.World.random("geometric", 15, 1, weighted=True), "return_to_start": True}),
@@ -34,8 +38,8 @@ class PlainGrid:
 
     MOVES = ((0, -1), (-1, 0), (0, 1), (1, 0))
 
-    def __init__(self, blocked, budget, full_coverage):
-        self.blocked, self.budget, self.full_coverage = blocked, budget, full_coverage
+    def __init__(self, blocked, budget):
+        self.blocked, self.budget = blocked, budget
 
     def reset(self, start):
         self.row, self.column = start
@@ -54,9 +58,7 @@ class PlainGrid:
         reward = -0.5 if bumps else 0.1 if before == 0 else -0.1 * before
         self.visits[self.row, self.column] += 1
         self.left -= 1
-        terminated = self.full_coverage and bool(np.all(self.blocked | (self.visits > 0)))
-        reward += 1.0 if terminated and before == 0 else 0.0
-        return self.features(), reward, terminated, not terminated and self.left < 1
+        return self.features(), reward, False, self.left < 1
 
     def features(self):
         rows, columns = self.blocked.shape
@@ -83,11 +85,10 @@ def test_gymnasiums_checker_has_nothing_to_say(name, options):
             check_env(gymnasium.make(name, observation="graph", **options).unwrapped, skip_render_check=True)
 
 
-@pytest.mark.parametrize("full_coverage", [False, True])
 @pytest.mark.parametrize("name", MAPS)
-def test_steps_are_the_papers(name, full_coverage):
-    env = gymnasium.make(GRID, map=name, budget=40, end_at_full_coverage=full_coverage)
-    plain = PlainGrid(np.array(env.unwrapped.world.blocked), 40, full_coverage)
+def test_steps_are_the_papers(name):
+    env = gymnasium.make(GRID, map=name, budget=40)
+    plain = PlainGrid(np.array(env.unwrapped.world.blocked), 40)
     random = np.random.default_rng(4)
     observation, info = env.reset(seed=3)
     expected = plain.reset(divmod(info["position"], 5))
@@ -112,11 +113,35 @@ def test_no_direction_is_masked():
     assert envs.unwrapped.action_masks().tolist() == [[True] * 4] * 2
 
 
-def test_full_coverage_terminates_with_a_bonus():
-    env = gymnasium.make(GRID, map=graphdrl.World.from_grid(".."), budget=9, end_at_full_coverage=True, start=(0, 0))
+def test_moves_that_are_free_and_lead_nowhere_new_are_truncated():
+    world = graphdrl.World.from_edges([[0, 1], [1, 2]], [0.0, 7.0])
+    env = gymnasium.make(GRAPH, map=world, budget=3, start=0)
     env.reset()
-    _, reward, terminated, truncated, info = env.step(2)
-    assert (reward, terminated, truncated, info["visited"]) == (1.1, True, False, 2)
+    steps, over = 0, False
+    while not over:
+        *_, terminated, truncated, _ = env.step(0)
+        steps, over = steps + 1, terminated or truncated
+    assert truncated and not terminated and steps == 1 + 10 * 3
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import graphdrl, gymnasium; gymnasium.make('GraphDRL/Grid-v0')",
+        "import gymnasium, graphdrl; gymnasium.make_vec('GraphDRL/Graph-v0', num_envs=2)",
+        "import gymnasium; gymnasium.make('graphdrl:GraphDRL/FirstVisit-v0')",
+        "import sys; sys.modules['gymnasium'] = None; import graphdrl",  # without Gymnasium
+    ],
+)
+def test_gymnasium_knows_the_names(line):
+    subprocess.run([sys.executable, "-c", line], check=True)
+
+
+def test_options_are_shown_one_by_one():
+    assert str(inspect.signature(graphdrl.environments.GridVectorEnv)).startswith("(num_envs: int = 1, map: str | ")
+    assert "max_visits: int = 16" in str(inspect.signature(graphdrl.environments.FirstVisitEnv))
+    with pytest.raises(TypeError, match="unexpected keyword argument 'weighted'"):
+        gymnasium.make(GRID, weighted=True)
 
 
 @pytest.mark.parametrize(("name", "options"), SETTINGS)
@@ -142,7 +167,7 @@ def test_many_environments_equal_gymnasiums_one_by_one(name, options):
         if step == 150:
             assert_equal(ours.reset(), theirs.reset())
         if step == 200 and "family" not in options:
-            start = {"options": {"start": ours.unwrapped._kind.setting.world.nodes[0]}}
+            start = {"options": {"start": ours.unwrapped._kind.options.world.nodes[0]}}
             assert_equal(ours.reset(**start), theirs.reset(**start))
 
 
@@ -281,9 +306,9 @@ def test_graph_observations_hang_together():
 
 
 def test_a_first_visit_that_is_too_far_to_be_seen_can_be_made():
-    length = 300
+    length = 2400  # the explorer looks at 1024 nodes around
     world = graphdrl.World.from_edges([(i, i + 1) for i in range(length - 1)])
-    env = gymnasium.make(FIRST_VISIT, map=world, budget=10 * length, start=150)
+    env = gymnasium.make(FIRST_VISIT, map=world, budget=10 * length, start=length // 2)
     env.reset()
     terminated, steps = False, 0
     while not terminated:
@@ -373,7 +398,6 @@ def begun_pair():
         (lambda: gymnasium.make(GRAPH, family="tree", size="x"), "bad size: expected a whole number from 1 up"),
         (lambda: gymnasium.make(GRAPH, family="tree", weighted="no"), "bad weighted: expected True or False"),
         (lambda: gymnasium.make(GRAPH, return_to_start="no"), "bad return_to_start"),
-        (lambda: gymnasium.make(GRID, end_at_full_coverage="no"), "bad end_at_full_coverage"),
         (lambda: begun_one().reset(options={"strat": 3}), "bad options: expected 'start', got 'strat'"),
         (lambda: begun_one().reset(options=3), "bad options: expected a dictionary, got 3"),
         (lambda: begun_one().step(1.5), "bad action: expected a whole number from 0 up, got 1.5"),

@@ -38,6 +38,7 @@ void Episode::reset(NodeId start) {
   visited_count_ = 1;
   prize_ = world_.prize(start);
   spent_ = 0;
+  free_moves_ = 0;
 }
 
 StepResult Episode::step(int action) {
@@ -64,7 +65,9 @@ StepResult Episode::enter(NodeId next, double cost) {
   position_ = next;
   walk_.push_back(next);
   walk_hash_ = extended_walk_hash(walk_hash_, next);
+  const double spent_before = spent_;
   spent_ += cost;
+  free_moves_ = first_visit || spent_ > spent_before ? 0 : free_moves_ + 1;
   return {.reward = reward_of(blocked, visits_before), .blocked = blocked, .first_visit = first_visit};
 }
 
@@ -80,7 +83,7 @@ double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
 }
 
 bool Episode::done() const {
-  if (terminal() || std::ssize(walk_) > kMaxSteps) return true;
+  if (terminal() || too_long()) return true;
   if (options_.action_space == ActionSpace::kDirections && task_.ends_anywhere()) return task_.limit() - spent_ < 1;
   const Observation now = observation();
   for (int action = 0; action < now.action_count(); ++action) {

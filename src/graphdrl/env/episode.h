@@ -32,6 +32,10 @@ inline constexpr double kRevisitReward = -0.1;     // eq. 3, times the visits be
 inline constexpr double kBlockedReward = -0.5;     // eq. 3
 inline constexpr double kFullCoverageBonus = 1.0;  // the author's code; with end_at_full_coverage
 
+// A way to an unvisited node, or to the end, takes fewer moves than there are nodes. Ten times as many leave room for
+// policies that look for one at random.
+inline constexpr int kFreeMovesPerNode = 10;
+
 struct StepResult {
   double reward;
   bool blocked;      // the move led into an obstacle or off the map
@@ -58,9 +62,15 @@ class Episode {
   StepResult stay();
   bool can_stay() const;  // what is left pays for it
 
-  // The budget is spent, or the state is terminal, or there is nowhere to go, or the walk has kMaxSteps steps. Where
-  // the walk must end at a node, it is there.
+  // The budget is spent, or the state is terminal, or there is nowhere to go: a walk that must end at a node is there
+  // then. Or the walk is too_long(), wherever it is.
   bool done() const;
+
+  // The walk has kMaxSteps steps, or goes round for nothing: its last kFreeMovesPerNode · N moves cost nothing and
+  // visited nothing new. Only done() heeds this: a walk that is given may be followed farther.
+  bool too_long() const {
+    return std::ssize(walk_) > kMaxSteps || free_moves_ >= kFreeMovesPerNode * std::int64_t{world_.node_count()};
+  }
 
   // Reached full coverage with end_at_full_coverage: nothing follows. A spent budget is no terminal state, only a
   // truncation: eq. 5 bootstraps there.
@@ -92,6 +102,7 @@ class Episode {
   int visited_count_ = 0;
   double prize_ = 0;
   double spent_ = 0;
+  std::int64_t free_moves_ = 0;  // since the last first visit or the last cost
 };
 
 }  // namespace graphdrl

@@ -6,12 +6,11 @@
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/env/vector_env.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/eval/statistics.h"
 #include "graphdrl/graph/search.h"
-#include "graphdrl/nn/paper_features.h"
+#include "graphdrl/nn/grid_episodes.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"
@@ -34,53 +33,44 @@ class Signature {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-// One of the episodes side by side, with what a learner keeps beside it.
+// Walks one of the episodes side by side by random moves.
 struct Runner {
-  explicit Runner(std::uint64_t seed) : rng(seed) {}
+  void begin(GridEpisodes& episodes, int index, const World& world) {
+    episodes.begin(index, world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
+  }
 
   Rng rng;
-  std::vector<float> features;  // [N, F]
-  std::int64_t tenths = 0;      // sum of rewards, in tenths: an integer
+  std::int64_t tenths = 0;  // sum of rewards, in tenths: an integer
 };
-
-void reset(const World& world, const PaperFeatureEncoder& encoder, Runner& runner, Episode& episode) {
-  const NodeId start = world.valid_nodes()[runner.rng.below(static_cast<std::uint32_t>(world.valid_count()))];
-  episode.reset(start);
-  encoder.begin(start, runner.features);
-}
 
 }  // namespace
 
 EnvironmentBench bench_environment() {
   const World world = load_one_world("paper:a");
-  const PaperFeatureEncoder encoder(world);
-  VectorEnv env(world, {}, kEpisodes);
+  GridEpisodes episodes({.world = world, .budget = Budget::parse("25"), .count = kEpisodes});
   std::vector<Runner> runners;
   for (int i = 0; i < kEpisodes; ++i) {
-    runners.emplace_back(derive_seed(1, 0, static_cast<std::uint64_t>(i)));
-    runners.back().features.resize(static_cast<std::size_t>(world.node_count()) * kPaperFeatureCount);
-    reset(world, encoder, runners.back(), env[i]);
+    runners.push_back({.rng = Rng(derive_seed(1, 0, static_cast<std::uint64_t>(i)))});
+    runners.back().begin(episodes, i, world);
   }
   const Stopwatch watch;
   for (int round = 0; round < kRounds; ++round) {
-    env.for_each([&](int index, Episode& episode) {
+    episodes.for_each([&](int index) {
       Runner& runner = runners[index];
       for (int i = 0; i < kStepsPerVisit; ++i) {
-        if (episode.done()) reset(world, encoder, runner, episode);
-        const NodeId from = episode.position();
-        const StepResult step = episode.step(static_cast<int>(runner.rng.below(kActionCount)));
-        encoder.update(from, episode.position(), step, runner.features);
-        runner.tenths += std::lround(10 * step.reward);
+        if (episodes.over(index)) runner.begin(episodes, index, world);
+        episodes.act(index, static_cast<int>(runner.rng.below(kActionCount)));
+        runner.tenths += std::lround(10 * episodes.rewards()[index]);
       }
     });
   }
   const double elapsed_s = watch.seconds();
   Signature signature;
   for (int i = 0; i < kEpisodes; ++i) {
-    signature.add(static_cast<std::uint64_t>(env[i].position()));
+    signature.add(static_cast<std::uint64_t>(episodes.episode(i).position()));
     signature.add(static_cast<std::uint64_t>(runners[i].tenths));
-    for (const std::uint32_t visits : env[i].visits()) signature.add(visits);
-    for (const float value : runners[i].features) signature.add(static_cast<std::uint64_t>(value));
+    for (const std::uint32_t visits : episodes.episode(i).visits()) signature.add(visits);
+    for (const float value : episodes.observation_of(i)) signature.add(static_cast<std::uint64_t>(value));
   }
   const double steps = static_cast<double>(kEpisodes) * kStepsPerVisit * kRounds;
   return {.steps_per_s = steps / elapsed_s, .signature = signature.value()};

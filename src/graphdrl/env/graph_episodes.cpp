@@ -1,0 +1,154 @@
+#include "graphdrl/env/graph_episodes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr double kMostPrize = 8;  // mean prizes
+constexpr double kMostCost = 8;   // mean edges
+constexpr int kMostUnvisited = 8;
+
+float flag(bool value) {
+  return value ? 1.0f : 0.0f;
+}
+
+float prize_of(const World& world, NodeId node) {
+  const double mean = world.total_prize() / world.valid_count();
+  return mean > 0 ? static_cast<float>(std::min(world.prize(node) / mean / kMostPrize, 1.0)) : 0.0f;
+}
+
+float budget_left(const Observation& now) {
+  const double budget = now.task->budget();
+  return budget > 0 ? static_cast<float>(std::clamp(1 - now.spent / budget, 0.0, 1.0)) : 0.0f;
+}
+
+int most_neighbours(const EpisodesOptions& options) {
+  if (!options.world) return options.is_grid() ? static_cast<int>(kAllDirections.size()) : options.most_nodes() - 1;
+  std::ptrdiff_t most = 0;
+  for (const NodeId node : options.world->valid_nodes()) {
+    most = std::max(most, std::ssize(options.world->open_neighbours(node)));
+  }
+  return static_cast<int>(most);
+}
+
+// The columns of `row` by name.
+template <typename Feature>
+auto columns(std::span<float> row) {
+  return [row](Feature feature) -> float& { return row[static_cast<std::size_t>(feature)]; };
+}
+
+// The first four columns.
+void write_node(const Episode& episode, NodeId node, std::span<float> row) {
+  const auto column = columns<GraphNodeFeature>(row);
+  const bool open = !episode.world().is_blocked(node);
+  column(GraphNodeFeature::kOpen) = flag(open);
+  column(GraphNodeFeature::kVisited) = flag(episode.visits()[node] > 0);
+  column(GraphNodeFeature::kCurrent) = flag(episode.position() == node);
+  column(GraphNodeFeature::kPrize) = open ? prize_of(episode.world(), node) : 0.0f;
+}
+
+void write_action(const Observation& now, const World& world, int action, std::span<float> row) {
+  const auto column = columns<GraphActionFeature>(row);
+  const NodeId target = now.target(action);
+  const auto around = world.open_neighbours(target);
+  const auto unvisited = std::ranges::count_if(around, [&](NodeId next) { return !now.visited(next); });
+  const double cost = now.cost(action) / world.open().mean_cost();
+  column(GraphActionFeature::kLegal) = flag(now.legal(action));
+  column(GraphActionFeature::kVisited) = flag(now.visited(target));
+  column(GraphActionFeature::kCost) = static_cast<float>(std::min(cost, kMostCost) / kMostCost);
+  column(GraphActionFeature::kPrize) = prize_of(world, target);
+  column(GraphActionFeature::kUnvisitedNeighbours) =
+      static_cast<float>(std::min<std::ptrdiff_t>(unvisited, kMostUnvisited)) / kMostUnvisited;
+}
+
+}  // namespace
+
+GraphEpisodes::GraphEpisodes(EpisodesOptions options, int max_neighbours)
+    : Episodes(std::move(options), ActionSpace::kNeighbours),
+      nodes_(this->options().most_nodes()),
+      neighbours_(max_neighbours > 0 ? max_neighbours : std::max(most_neighbours(this->options()), 1)) {
+  allocate(std::size_t{kFlatGraphNodeFeatureCount} * nodes_ + std::size_t{kGraphActionFeatureCount} * neighbours_ +
+               kGraphFeatureCount,
+           neighbours_);
+}
+
+GraphObservation GraphEpisodes::graph(int index) const {
+  const Episode& at = episode(index);
+  const Observation now = at.observation();
+  std::vector<float> rows(static_cast<std::size_t>(at.world().node_count()) * kGraphNodeFeatureCount);
+  for (NodeId node = 0; node < at.world().node_count(); ++node) {
+    const std::span<float> row(rows.data() + std::ptrdiff_t{node} * kGraphNodeFeatureCount, kGraphNodeFeatureCount);
+    write_node(at, node, row);
+    const int action = now.action_to(node);
+    const auto column = columns<GraphNodeFeature>(row);
+    column(GraphNodeFeature::kLegal) = flag(action != kNoAction && now.legal(action));
+    column(GraphNodeFeature::kBudgetLeft) = budget_left(now);
+  }
+  return observation_on(at.world().open(), at.world().open().mean_cost(), std::move(rows));
+}
+
+void GraphEpisodes::show_start(int index, const Episode& episode) {
+  const World& world = episode.world();
+  for (const NodeId node : world.valid_nodes()) {
+    const auto degree = std::ssize(world.open_neighbours(node));
+    if (degree <= neighbours_) continue;
+    throw Error({.what = fmt::format("a node of {} neighbours", degree),
+                 .expected = fmt::format("at most max_neighbours = {}", neighbours_),
+                 .where = world.name()});
+  }
+  std::ranges::fill(observation_of(index), 0.0f);
+  for (NodeId node = 0; node < world.node_count(); ++node) show_node(index, episode, node);
+  show_moves(index, episode);
+}
+
+Episodes::Outcome GraphEpisodes::take(int index, Episode& episode, int action) {
+  Outcome outcome;
+  if (mask_of(index)[action]) {
+    const NodeId from = episode.position();
+    outcome.reward = episode.step(action).reward;
+    show_node(index, episode, from);
+    show_node(index, episode, episode.position());
+  } else {
+    outcome = waste(episode);
+  }
+  show_moves(index, episode);
+  outcome.truncated = episode.too_long();
+  outcome.terminated =
+      outcome.terminated || episode.observation().all_visited() || (episode.done() && !outcome.truncated);
+  return outcome;
+}
+
+void GraphEpisodes::show_node(int index, const Episode& episode, NodeId node) {
+  write_node(episode, node,
+             observation_of(index).subspan(static_cast<std::size_t>(node) * kFlatGraphNodeFeatureCount,
+                                           kFlatGraphNodeFeatureCount));
+}
+
+void GraphEpisodes::show_moves(int index, const Episode& episode) {
+  const Observation now = episode.observation();
+  const std::span<bool> mask = mask_of(index);
+  const std::span<std::int64_t> targets = targets_of(index);
+  const std::span<float> moves =
+      observation_of(index).subspan(static_cast<std::size_t>(nodes_) * kFlatGraphNodeFeatureCount);
+  std::ranges::fill(moves, 0.0f);
+  std::ranges::fill(mask, false);
+  std::ranges::fill(targets, kNoNode);
+  for (int action = 0; action < now.action_count(); ++action) {
+    mask[action] = now.legal(action);
+    targets[action] = now.target(action);
+    write_action(now, episode.world(), action,
+                 moves.subspan(static_cast<std::size_t>(action) * kGraphActionFeatureCount, kGraphActionFeatureCount));
+  }
+  const auto column = columns<GraphFeature>(moves.last(kGraphFeatureCount));
+  column(GraphFeature::kBudgetLeft) = budget_left(now);
+  column(GraphFeature::kVisited) =
+      static_cast<float>(now.visited_count) / static_cast<float>(episode.world().valid_count());
+}
+
+}  // namespace graphdrl

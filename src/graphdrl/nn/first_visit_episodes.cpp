@@ -1,0 +1,101 @@
+#include "graphdrl/nn/first_visit_episodes.h"
+
+#include <algorithm>
+
+namespace graphdrl {
+namespace {
+
+float cut(float value) {
+  return std::clamp(value, -kMostExplorerFeature, kMostExplorerFeature);
+}
+
+}  // namespace
+
+FirstVisitEpisodes::FirstVisitEpisodes(EpisodesOptions options, int most_visits)
+    : Episodes(std::move(options), ActionSpace::kNeighbours),
+      most_visits_(most_visits),
+      memories_(static_cast<std::size_t>(count())) {
+  allocate(std::size_t{kFirstVisitFeatureCount} * most_visits, most_visits);
+}
+
+GraphObservation FirstVisitEpisodes::graph(int index) const {
+  const double mean_cost = episode(index).world().open().mean_cost();
+  const ExplorerBatch& seen = memories_[index].seen;
+  std::vector<float> rows = seen.node_x;
+  std::ranges::transform(rows, rows.begin(), cut);
+  return observation_on(seen.graphs.graph(0), mean_cost, std::move(rows));
+}
+
+std::vector<std::int64_t> FirstVisitEpisodes::target_rows(int index) const {
+  const Memory& memory = memories_[index];
+  std::vector<std::int64_t> rows(memory.seen.target.begin(), memory.seen.target.end());
+  rows.resize(static_cast<std::size_t>(most_visits_), kNoNode);
+  return rows;
+}
+
+void FirstVisitEpisodes::show_start(int index, const Episode& episode) {
+  Memory& memory = memories_[index];
+  const Observation now = episode.observation();
+  memory.visited = now.ground();
+  show(index, episode);
+}
+
+Episodes::Outcome FirstVisitEpisodes::take(int index, Episode& episode, int action) {
+  Memory& memory = memories_[index];
+  Outcome outcome;
+  if (mask_of(index)[action]) {
+    for (const NodeId node : way_to(memory, episode, memory.visits[action].node)) {
+      outcome.reward += episode.step(episode.observation().action_to(node)).reward;
+    }
+    memory.visited.insert(episode.position());
+  } else {
+    outcome = waste(episode);
+  }
+  show(index, episode);
+  outcome.terminated = outcome.terminated || memory.visits.empty();
+  return outcome;
+}
+
+// Without the current node.
+std::vector<NodeId> FirstVisitEpisodes::way_to(Memory& memory, const Episode& episode, NodeId target) {
+  memory.search.run(episode.world().open(), episode.position(), kNoLimit, [&](NodeId node, double) {
+    if (node == target) return NearestFirst::Next::kEnd;
+    return memory.visited.contains(node) ? NearestFirst::Next::kThrough : NearestFirst::Next::kPast;
+  });
+  std::vector<NodeId> walk = {episode.position()};
+  memory.search.append_path_to(target, walk);
+  walk.erase(walk.begin());
+  return walk;
+}
+
+void FirstVisitEpisodes::show(int index, const Episode& episode) {
+  Memory& memory = memories_[index];
+  const Observation now = episode.observation();
+  memory.seen.clear();
+  const Exploration state(now, memory.visited);
+  const auto visits = memory.encoder.append(state, kExplorerScope, memory.seen);
+  memory.visits.assign(visits.begin(), visits.end());
+  if (visits.empty() && memory.encoder.overlooked()) {
+    // The nearest, when all are out of the encoder's scope.
+    const FirstVisit far = state.nearest_first_visit(memory.search);
+    if (far.node != kNoNode) memory.visits.push_back(far);
+  }
+  const std::span<bool> mask = mask_of(index);
+  const std::span<std::int64_t> targets = targets_of(index);
+  const std::span<float> out = observation_of(index);
+  std::ranges::fill(mask, false);
+  std::ranges::fill(targets, kNoNode);
+  std::ranges::fill(out, 0.0f);
+  for (std::size_t v = 0; v < std::min(memory.visits.size(), mask.size()); ++v) {
+    mask[v] = true;
+    targets[v] = memory.visits[v].node;
+    const std::span<float> row = out.subspan(v * kFirstVisitFeatureCount, kFirstVisitFeatureCount);
+    row[static_cast<std::size_t>(FirstVisitFeature::kExists)] = 1;
+    if (v == memory.seen.target.size()) break;  // the far one, of which nothing is seen
+    const auto features =
+        std::span(memory.seen.visit_x).subspan(v * kExplorerVisitFeatureCount, kExplorerVisitFeatureCount);
+    std::ranges::transform(features, row.begin() + static_cast<int>(FirstVisitFeature::kExplorer), cut);
+  }
+}
+
+}  // namespace graphdrl
