@@ -10,7 +10,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-GreyPicture read(const std::string& bytes) {
+GreyPicture parsed(const std::string& bytes) {
   return read_picture(bytes, "file");
 }
 
@@ -26,7 +26,7 @@ TEST(Picture, ReadsEveryKindOfNetpbm) {
       std::string("P6\n2 2\n255\n") + std::string(3, '\xff') + std::string(6, '\0') + std::string(3, '\xff'),
   };
   for (const std::string& bytes : pictures) {
-    const GreyPicture picture = read(bytes);
+    const GreyPicture picture = parsed(bytes);
     EXPECT_EQ(picture.width, 2);
     EXPECT_EQ(picture.height, 2);
     EXPECT_THAT(picture.pixels, ElementsAre(255, 0, 0, 255)) << bytes;
@@ -34,7 +34,7 @@ TEST(Picture, ReadsEveryKindOfNetpbm) {
 }
 
 TEST(Picture, RefusesWhatIsDamaged) {
-  const auto complaint = [](const std::string& bytes) { return error_of([&] { read(bytes); }); };
+  const auto complaint = [](const std::string& bytes) { return error_of([&] { parsed(bytes); }); };
   EXPECT_THAT(complaint("GIF89a"), HasSubstr("not a picture: expected PNG, PGM, PBM or PPM"));
   EXPECT_THAT(complaint("P5\n"), HasSubstr("not a number"));
   EXPECT_THAT(complaint("P5\n2 -2 255\n"), HasSubstr("not a number"));

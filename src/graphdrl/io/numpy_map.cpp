@@ -14,7 +14,7 @@ namespace graphdrl {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr std::size_t kMostNodes = 20'000;  // a matrix of 400 million values
+constexpr std::size_t kMostRows = 20'000;  // a matrix of 400 million values
 
 // An array of numbers as its file holds it [numpy.org, the NPY format].
 class NumpyArray {
@@ -105,8 +105,8 @@ class NumpyArray {
     }
     const bool one = shape_.size() == 2 && shape_[0] == shape_[1];
     const bool two = shape_.size() == 3 && shape_[0] == 2 && shape_[1] == shape_[2];
-    if ((!one && !two) || shape_.back() == 0 || shape_.back() > kMostNodes) {
-      fail("an array of another shape", fmt::format("(2, N, N) or (N, N), N up to {}", kMostNodes), text);
+    if ((!one && !two) || shape_.back() == 0 || shape_.back() > kMostRows) {
+      fail("an array of another shape", fmt::format("(2, N, N) or (N, N), N up to {}", kMostRows), text);
     }
     for (const std::size_t size : shape_) count *= size;
     if (values_.size() < count * size_) fail("the file ends within the array", fmt::format("{} values", count));

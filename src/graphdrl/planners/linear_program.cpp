@@ -13,7 +13,7 @@ constexpr int kPrimalInfeasible = 1;        // a status of CLP
 constexpr int kOverhead = 10;               // of a solve, in iterations
 constexpr int kIterationsPerRow = 20;       // of one solve: more is a sign of cycling
 constexpr int kFewestIterations = 2'000;    // whatever the number of rows
-constexpr double kRounding = 1e-11;         // relative, of the sums that make a bound
+constexpr double kSumRounding = 1e-11;      // relative, of the sums that make a bound
 constexpr double kInfeasibleMargin = 1e-6;  // by which weighted rows must be missed
 
 // Ends the simplex method at the deadline.
@@ -165,7 +165,7 @@ double LinearProgram::bound_by(const double* duals, bool with_objective) {
     add(cost * (cost > 0 ? model.columnLower()[column] : model.columnUpper()[column]));
     cost = -cost;
   }
-  return -least + kRounding * size;
+  return -least + kSumRounding * size;
 }
 
 int LinearProgram::columns() const {

@@ -16,8 +16,8 @@ constexpr double kLeft = 50;
 constexpr double kTop = 30;
 constexpr double kBetween = 25;
 constexpr double kBelow = 35;  // a panel: numbers and title of its axis
-constexpr double kTextSize = 11;
-constexpr Colour kInk = {0x20, 0x20, 0x20};
+constexpr double kLabelSize = 11;
+constexpr Colour kDark = {0x20, 0x20, 0x20};
 constexpr Colour kRule = {0xdd, 0xdd, 0xdd};
 constexpr Colour kLine = {0x00, 0x72, 0xb2};
 constexpr Colour kBand = {0xc5, 0xdf, 0xee};
@@ -40,17 +40,17 @@ class Axes {
   }
 
   void draw(Canvas& canvas, const std::string& title, const std::string& x_title) const {
-    canvas.text({corner_.x, corner_.y - 10}, title, kTextSize + 1, kInk, Anchor::kStart);
+    canvas.text({corner_.x, corner_.y - 10}, title, kLabelSize + 1, kDark, Anchor::kStart);
     for (const double tick : axis_ticks(low_, high_)) {
       const double y = at({0, tick}).y;
       canvas.segments(std::vector<Segment>{{{corner_.x, y}, {corner_.x + kWidth, y}}}, kRule, 1);
-      canvas.text({corner_.x - 6, y + 4}, fmt::format("{:g}", tick), kTextSize, kInk, Anchor::kEnd);
+      canvas.text({corner_.x - 6, y + 4}, fmt::format("{:g}", tick), kLabelSize, kDark, Anchor::kEnd);
     }
     for (const double tick : axis_ticks(0, last_)) {
       const double x = at({tick, low_}).x;
-      canvas.text({x, corner_.y + kHeight + 16}, fmt::format("{:g}", tick), kTextSize, kInk, Anchor::kMiddle);
+      canvas.text({x, corner_.y + kHeight + 16}, fmt::format("{:g}", tick), kLabelSize, kDark, Anchor::kMiddle);
     }
-    canvas.text({corner_.x + kWidth / 2, corner_.y + kHeight + 30}, x_title, kTextSize, kInk, Anchor::kMiddle);
+    canvas.text({corner_.x + kWidth / 2, corner_.y + kHeight + 30}, x_title, kLabelSize, kDark, Anchor::kMiddle);
   }
 
  private:
@@ -151,7 +151,7 @@ void draw_curves(Canvas& canvas, const std::vector<CurvePanel>& panels, const st
     for (std::size_t j = 1; j < line.size(); ++j) segments.push_back({line[j - 1], line[j]});
     canvas.segments(segments, kLine, 1.5);
   }
-  canvas.text({kLeft, size.y - 8}, note, kTextSize, kInk, Anchor::kStart);
+  canvas.text({kLeft, size.y - 8}, note, kLabelSize, kDark, Anchor::kStart);
 }
 
 }  // namespace graphdrl

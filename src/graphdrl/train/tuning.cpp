@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kMany = "many";
+constexpr const char* kManyMaps = "many";
 constexpr int kSide = 5;               // of the maps, as the paper's
 constexpr std::uint64_t kPurpose = 7;  // of the random numbers that draw settings
 constexpr int kMostRuns = 100'000;
@@ -36,7 +36,7 @@ const std::vector<std::pair<const char*, std::vector<Json>>>& search_space() {
       {"dropout", {0.0, 0.2, 0.5}},
       {"batch_size", {8, 16, 32}},
       {"reward", {"visit_penalty", "coverage_gain"}},
-      {"maps", {"paper:a", kMany}},
+      {"maps", {"paper:a", kManyMaps}},
   };
   return space;
 }
