@@ -1,5 +1,6 @@
 """What the Python tests share: the programs under test, blocks of the docs, a reader of safetensors files."""
 
+import fcntl
 import json
 import os
 import pathlib
@@ -50,8 +51,15 @@ def run():
 
 @pytest.fixture(scope="session")
 def trained(tmp_path_factory):
-    """A short run, for tests that need files of a training."""
-    folder = tmp_path_factory.mktemp("runs") / "run"
-    command = [BIN / "graphdrl", "train", "--episodes", "25", "--out", folder, "--json"]
-    process = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True)
-    return folder, json.loads(process.stdout)
+    """A short run and its summary, for tests that need files of a training: one for all of pytest's processes."""
+    base = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        base = base.parent
+    folder, summary = base / "trained", base / "trained.json"
+    with (base / "trained.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not summary.exists():
+            command = [BIN / "graphdrl", "train", "--episodes", "25", "--out", folder, "--json"]
+            process = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True)
+            summary.write_text(process.stdout)
+    return folder, json.loads(summary.read_text())

@@ -41,6 +41,9 @@ def public():
 EVERYTHING = dict(public())
 CALLABLES = {name: value for name, value in EVERYTHING.items() if callable(value) or isinstance(value, property)}
 
+# One of pytest's processes makes the pages for all of them.
+pytestmark = pytest.mark.xdist_group("docs")
+
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shlex
 import shutil
 import signal
 import struct
@@ -455,7 +456,7 @@ def test_interrupted_training_goes_on_where_it_was(run, trained, tmp_path, numbe
 
 
 def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
-    training = ["train", "--preset", "paper", "--episodes", "10"]
+    training = ["train", "--preset", "paper", "--episodes", "10", "--batch-size", "8"]
     process = run("graphdrl", *training, "--seeds", "1-2,5", "--out", "all", "--threads", "2", "--json", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     runs = json.loads(process.stdout)["runs"]
@@ -487,7 +488,7 @@ def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
 
 
 def test_a_kill_in_the_middle_of_many_seeds_changes_nothing(run, tmp_path):
-    training = ["train", "--preset", "paper", "--episodes", "30", "--seeds", "3-4"]
+    training = ["train", "--preset", "paper", "--episodes", "30", "--batch-size", "8", "--seeds", "3-4"]
     assert run("graphdrl", *training, "--out", tmp_path / "whole").returncode == 0
     command = [BIN / "graphdrl", *training, "--out", tmp_path / "killed"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -554,7 +555,7 @@ def test_closed_streams_are_no_crash():
     def status(command):
         return subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False).stdout.split()[-1]
 
-    graphdrl = BIN / "graphdrl"
+    graphdrl = shlex.quote(str(BIN / "graphdrl"))
     assert status(f"{graphdrl} evaluate --policy nearest | true; echo ${{PIPESTATUS[0]}}") == "2"
     assert status(f"{graphdrl} evaluate --fast 2>&-; echo $?") == "2"
     assert status(f"{graphdrl} evaluate --policy nearest >/dev/full; echo $?") == "2"

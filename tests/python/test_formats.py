@@ -4,13 +4,13 @@ import json
 import os
 import pathlib
 import random
-import shutil
 import subprocess
 
 import igraph
 import networkx
 import numpy
 import pytest
+from programs import require_program
 
 GRAPHDRL = pathlib.Path(os.environ["GRAPHDRL_BIN"]) / "graphdrl"
 
@@ -96,28 +96,24 @@ def test_numpy(tmp_path):
     assert counts(tmp_path / "ring.npy") == (7, 7, True, False, 1)
 
 
-needs_dot = pytest.mark.skipif(shutil.which("dot") is None, reason="Graphviz is not installed")
-needs_convert = pytest.mark.skipif(shutil.which("convert") is None, reason="ImageMagick is not installed")
-
-
-@needs_dot
 @pytest.mark.parametrize("layout", ["dot", "neato", "sfdp"])
 def test_graphviz(tmp_path, layout):
     source = """digraph "G" { rankdir=LR; node [shape=box]; start -> {a b c}; a -> b [label="x" weight=3];
         subgraph cluster_1 { c; d; c -> d } d -> start; "node with \\"quotes\\"" -> a; { rank=same; a; b } }"""
-    laid = subprocess.run([layout, "-Tdot"], input=source, capture_output=True, text=True, check=True).stdout
+    program = require_program(layout, "-V", "graphviz version")
+    laid = subprocess.run([program, "-Tdot"], input=source, capture_output=True, text=True, check=True).stdout
     (tmp_path / "laid.dot").write_text(laid)
     assert counts(tmp_path / "laid.dot") == (6, 7, True, True, 1)
     assert info(tmp_path / "laid.dot")["bounding_box"] is not None
 
 
-@needs_convert
 @pytest.mark.parametrize("command", ["map.png", "map.pgm", "-compress none map.pgm", "map.pbm", "map.ppm",
                                      "-depth 16 map.png", "-colors 8 -type Palette map.png", "-alpha on map.png",
                                      "-interlace PNG map.png"])  # fmt: skip
 def test_imagemagick(tmp_path, command):
     options = command.split()
-    subprocess.run(["convert", "-size", "40x30", "xc:white", "-fill", "black", "-draw", "rectangle 5,5 10,20",
+    convert = require_program("convert", "-version", "^Version: ImageMagick")
+    subprocess.run([convert, "-size", "40x30", "xc:white", "-fill", "black", "-draw", "rectangle 5,5 10,20",
                     "-draw", "rectangle 20,0 20,25", *options], cwd=tmp_path, check=True)
     found = info(tmp_path / options[-1])
     assert (found["nodes"], found["valid_nodes"], found["components"]) == (1200, 1200 - 6 * 16 - 26, 1)

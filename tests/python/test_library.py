@@ -4,14 +4,18 @@ import json
 import os
 import pathlib
 import re
-import shutil
+import shlex
 import subprocess
 
 import pytest
 from conftest import BIN
+from programs import find_program, require_program
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 EXAMPLES = ROOT / "examples" / "library"
+
+# One of pytest's processes installs and builds for all of them.
+pytestmark = pytest.mark.xdist_group("library")
 
 
 def call(*command, **options):
@@ -46,7 +50,7 @@ def built(prefix, tmp_path_factory):
 
 
 def test_the_c_example_has_no_leak_and_no_error(built):
-    valgrind = shutil.which("valgrind")
+    valgrind = find_program("valgrind", "--version", "^valgrind-")
     checked = [valgrind, "-q", "--leak-check=full", "--show-leak-kinds=definite,possible", "--error-exitcode=9"]
     text = call(*(checked if valgrind else []), built / "plan_in_c")
     assert "5 doors in 11.5 of 12 minutes; no walk reaches more than 5: this one is the best" in text
@@ -63,7 +67,8 @@ def test_the_cpp_example_plans_and_refuses(built, run, tmp_path):
 
 
 def test_pkg_config_builds_c99_and_cpp17(prefix, tmp_path):
-    flags = call("pkg-config", "--cflags", "--libs", "graphdrl", env=environment(prefix)).split()
+    pkg_config = require_program("pkg-config", "--version", r"^\d+\.\d+")
+    flags = call(pkg_config, "--cflags", "--libs", "graphdrl", env=environment(prefix)).split()
     strict = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
     call("cc", "-std=c99", *strict, EXAMPLES / "plan.c", *flags, "-o", tmp_path / "c")
     call("c++", "-std=c++17", *strict, EXAMPLES / "plan.cpp", *flags, "-o", tmp_path / "cpp")
@@ -104,10 +109,10 @@ def test_every_command_has_a_manual_page(prefix, run):
     plan = (prefix / "share" / "man" / "man1" / "graphdrl-plan.1").read_text()
     train = (prefix / "share" / "man" / "man1" / "graphdrl-train.1").read_text()
     assert r"\fB\-\-time\-limit\fR" in plan and r"\fB\-\-learning\-rate\fR" in train
-    if shutil.which("man"):
+    if man := find_program("man", "--version", r"^man \d"):
         for page in pages:
             file = prefix / "share" / "man" / "man1" / f"{page}.1"
-            done = subprocess.run(["man", "--warnings", "-l", file], capture_output=True, text=True, check=False)
+            done = subprocess.run([man, "--warnings", "-l", file], capture_output=True, text=True, check=False)
             assert done.returncode == 0 and done.stderr == "", page
 
 
@@ -120,7 +125,7 @@ def test_bash_completes_commands_options_and_values(prefix, run):
         return call(
             "bash",
             "-c",
-            f"source {script}; COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; _graphdrl; "
+            f"source {shlex.quote(str(script))}; COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}; _graphdrl; "
             'printf "%s\\n" "${COMPREPLY[@]}"',
         ).split()
 
@@ -131,14 +136,14 @@ def test_bash_completes_commands_options_and_values(prefix, run):
     assert completed("graphdrl", "maps", "info", "x", "--connectivity", "") == ["4", "8"]
 
 
-@pytest.mark.parametrize("shell", ["zsh", "fish"])
-def test_other_shells_take_their_completions(shell, run, tmp_path):
+@pytest.mark.parametrize("shell, answer", [("zsh", r"^zsh \d"), ("fish", "^fish, version")])
+def test_other_shells_take_their_completions(shell, answer, run, tmp_path):
     done = run("graphdrl", "completion", shell)
     assert "time-limit" in done.stdout and "generate" in done.stdout
     assert shell != "zsh" or "'*--policy[" in done.stdout  # may be given again
-    if shutil.which(shell):
+    if program := find_program(shell, "--version", answer):
         (tmp_path / "script").write_text(done.stdout)
-        call(shell, "-n", tmp_path / "script")
+        call(program, "-n", tmp_path / "script")
 
 
 def test_completion_refuses_what_it_does_not_know(run):

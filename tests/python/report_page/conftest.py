@@ -8,6 +8,7 @@ import re
 
 import make_samples
 import pytest
+from programs import require_program
 from selenium import webdriver
 
 PROGRAM = pathlib.Path(os.environ["GRAPHDRL_BIN"]) / "graphdrl"
@@ -88,12 +89,14 @@ class Page:
 
 @pytest.fixture(scope="session")
 def driver():
+    chromium = require_program("chromium", "--version", "^Chromium ")
+    chromedriver = require_program("chromedriver", "--version", "^ChromeDriver ")
     options = webdriver.ChromeOptions()
     for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1280,900"):
         options.add_argument(argument)
-    options.binary_location = "/usr/bin/chromium"
+    options.binary_location = chromium
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    made = webdriver.Chrome(options=options, service=webdriver.ChromeService("/usr/bin/chromedriver"))
+    made = webdriver.Chrome(options=options, service=webdriver.ChromeService(chromedriver))
     yield made
     made.quit()
 
