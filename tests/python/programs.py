@@ -17,7 +17,7 @@ def find_program(name, question, answer):
         if path is None:
             continue
         try:
-            done = subprocess.run([path, question], stdin=subprocess.DEVNULL, capture_output=True, timeout=60, check=False)
+            done = subprocess.run([path, question], input=b"", capture_output=True, timeout=60, check=False)
         except (OSError, subprocess.TimeoutExpired):
             continue
         said = (done.stdout + done.stderr).decode(errors="replace")
