@@ -1,0 +1,222 @@
+// What programs write into the graph formats beyond plain nodes and edges.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <pugixml.hpp>
+
+#include "graphdrl/io/map_formats.h"
+#include "graphdrl/io/xml.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+struct NotedGraph {
+  GraphMap map;
+  std::vector<std::string> notes;
+};
+NotedGraph noted_graph(const std::string& text, MapOptions options = {}) {
+  NotedGraph result;
+  options.note = [&](const std::string& note) { result.notes.push_back(note); };
+  result.map = std::get<GraphMap>(format_of(text).read(text, "file", options));
+  return result;
+}
+GraphMap graph_of(const std::string& text) {
+  return noted_graph(text).map;
+}
+std::string graph_complaint(const std::string& text) {
+  return error_of([&] { graph_of(text); });
+}
+
+TEST(Dot, KnowsListsOfNodes) {
+  const GraphMap map = graph_of("digraph { a, b:port -> c, d -> a; c, d [prize=5]; e, f }");
+  EXPECT_THAT(map.labels, ElementsAre("a", "b", "c", "d", "e", "f"));
+  EXPECT_EQ(map.graph.edge_count(), 6);
+  EXPECT_THAT(map.graph.neighbours(1), ElementsAre(2, 3));
+  EXPECT_THAT(map.prizes, ElementsAre(1, 1, 5, 5, 1, 1));
+  EXPECT_THAT(graph_complaint("graph { a, [prize=5] }"), HasSubstr("not a node after a comma"));
+}
+
+TEST(Dot, ASubgraphNamedAgainIsTheOneBefore) {
+  const GraphMap map = graph_of(
+      "digraph { subgraph A { node [prize=2]; a; subgraph B { b } } subgraph A { c; subgraph B { e } -> f } -> d;"
+      " subgraph B { g } -> d; { h } -> d }");
+  EXPECT_THAT(map.labels, ElementsAre("a", "b", "c", "e", "f", "d", "g", "h"));
+  EXPECT_THAT(map.prizes, ElementsAre(2, 2, 2, 2, 2, 1, 1, 1));
+  EXPECT_THAT(map.graph.neighbours(1), ElementsAre(4, 5));  // b -> f, d
+  EXPECT_THAT(map.graph.neighbours(6), ElementsAre(5));
+  EXPECT_EQ(map.graph.edge_count(), 2 + 5 + 1 + 1);
+  std::string again = "graph { subgraph A { a";
+  for (int i = 0; i < 1000; ++i) again += fmt::format(" {}", i);
+  for (int i = 0; i < 1000; ++i) again += "} subgraph A {";
+  EXPECT_THAT(graph_complaint(again + "} }"), HasSubstr("far more edges"));
+}
+
+TEST(Dot, LabelsHaveEscapes) {
+  const GraphMap map = graph_of(R"(graph { a [label="\\N"]; b [label="at \N"]; "c\\d" [label="c"]; a -- b })");
+  EXPECT_THAT(map.labels, ElementsAre("\\N", "at b", "c"));
+  EXPECT_THAT(graph_of(R"(graph { a -- "c\\d" [label="\\N"] })").labels, ElementsAre("a", "c\\d"));
+  EXPECT_THAT(graph_of(R"(graph { a [label=<\\N>]; b [label="\N"] })").labels, ElementsAre("a", "b"));
+}
+
+TEST(Dot, TheStartOfAModelIsNoState) {
+  for (const char* const label : {"[label=\"\", shape=none]", ""}) {
+    const NotedGraph model = noted_graph(fmt::format(
+        "digraph g {{ __start0 {}; s0 [label=\"off\"]; s1 [label=\"on\"]; __start0 -> s1; s0 -> s1; s1 -> s0 }}",
+        label));
+    EXPECT_THAT(model.map.labels, ElementsAre("off", "on"));
+    EXPECT_EQ(model.map.task.start, 1);
+    EXPECT_EQ(model.map.graph.edge_count(), 2);
+    EXPECT_THAT(model.notes, IsEmpty());
+  }
+  const GraphMap last = graph_of("digraph { 6; 0; __start0 [label=\"\"]; __start0 -> 6; 6 -> 0 }");
+  EXPECT_THAT(last.labels, ElementsAre("6", "0"));
+  EXPECT_EQ(last.task.start, 0);
+  // Nodes of that name that are states.
+  EXPECT_EQ(graph_of("digraph { __start [label=here]; __start -> b }").task.start, kNoNode);
+  EXPECT_EQ(graph_of("digraph { __start -> b -> __start }").graph.node_count(), 2);
+  EXPECT_EQ(graph_of("graph { __start -- b }").graph.node_count(), 2);
+  const NotedGraph two = noted_graph("digraph { __start0 -> a; __start1 -> b; a -> b }");
+  EXPECT_EQ(two.map.task.start, 0);
+  EXPECT_THAT(two.notes, ElementsAre(HasSubstr("2 starts, of which 'a' is taken")));
+}
+
+constexpr const char* kYed = R"(<graphml xmlns:y="http://www.yworks.com/xml/graphml">
+  <key for="node" id="d6" yfiles.type="nodegraphics"/>
+  <graph edgedefault="directed" id="G">
+    <node id="n0"><data key="d6"><y:GenericNode><y:Geometry height="30" width="50" x="10" y="-2.5"/>
+      <y:NodeLabel>Start
+        <y:LabelModel/></y:NodeLabel></y:GenericNode></data></node>
+    <node id="n1" yfiles.foldertype="group"><data key="d6"><y:ProxyAutoBoundsNode><y:Realizers><y:GroupNode>
+      <y:Geometry x="0" y="0"/><y:NodeLabel>Frame</y:NodeLabel></y:GroupNode></y:Realizers>
+      </y:ProxyAutoBoundsNode></data>
+      <graph edgedefault="directed" id="n1:">
+        <node id="n1::n0"><data key="d6"><y:ShapeNode><y:Geometry x="1" y="2"/><y:NodeLabel>A</y:NodeLabel>
+          </y:ShapeNode></data></node>
+        <node id="n1::n1"><data key="d6"><y:ShapeNode><y:Geometry x="3" y="4"/><y:NodeLabel>B</y:NodeLabel>
+          </y:ShapeNode></data></node>
+        <edge source="n1::n0" target="n1::n1"/>
+      </graph></node>
+    <edge source="n0" target="n1::n0"/>
+  </graph>
+</graphml>)";
+
+TEST(GraphMl, TakesTextsPlacesAndGroupsOfYed) {
+  const NotedGraph drawing = noted_graph(kYed);
+  EXPECT_THAT(drawing.map.labels, ElementsAre("Start", "A", "B"));
+  EXPECT_THAT(drawing.map.places.points, ElementsAre(Point{10, -2.5}, Point{1, 2}, Point{3, 4}));
+  EXPECT_EQ(drawing.map.graph.edge_count(), 2);
+  EXPECT_THAT(drawing.map.graph.neighbours(1), ElementsAre(2));
+  EXPECT_THAT(drawing.notes, ElementsAre(HasSubstr("groups without edges of their own are left out: 1")));
+}
+
+TEST(GraphMl, AGroupWithAnEdgeIsANode) {
+  const NotedGraph map = noted_graph(
+      "<graphml><graph edgedefault='directed'><node id='a'/><node id='g'><graph edgedefault='undirected'><node id='b'/>"
+      "<node id='c'/><edge source='b' target='c'/></graph></node><edge source='a' target='g'/></graph></graphml>");
+  EXPECT_THAT(map.map.labels, ElementsAre("a", "g", "b", "c"));
+  EXPECT_EQ(map.map.graph.edge_count(), 3);
+  EXPECT_THAT(map.notes, IsEmpty());
+}
+
+TEST(GraphMl, IsValidXmlWhateverLabelsHold) {
+  const std::vector<std::string> labels = {
+      "a\x01"
+      "b",
+      std::string("nul\0l", 5),
+      "\xFF",
+      "\xEF\xBF\xBE!",
+      "a\tb",
+      "a\nb",
+      "a\rb",
+      "a b",
+      "\x1B[31m <&>\"'"};
+  const auto count = static_cast<NodeId>(labels.size());
+  GraphMap map{.graph = Graph::from_edges(count, std::vector<Edge>{{0, 1}}),
+               .blocked = std::vector<bool>(count),
+               .labels = labels};
+  const std::string text = format_map(map, "x.graphml");
+  for (std::uint32_t code = 0; code < 32; ++code) EXPECT_THAT(text, Not(HasSubstr(fmt::format("&#{};", code)))) << code;
+  const GraphMap again = graph_of(text);
+  EXPECT_THAT(again.labels, ElementsAre("a␁b", "nul␀l", "�", "�!", "a\tb", "a\nb", "a\rb", "a b", "␛[31m <&>\"'"));
+  map.labels = {"\xFE", "\xFF"};
+  map.graph = Graph::from_edges(2, std::vector<Edge>{{0, 1}});
+  map.blocked.resize(2);
+  EXPECT_EQ(graph_of(format_map(map, "x.graphml")).graph.node_count(), 2);
+}
+
+TEST(Gml, KnowsNamedCharacters) {
+  const GraphMap map = graph_of(
+      "graph [ node [ id 1 label \"Caf&eacute; &amp; M&uuml;nchen &#8364;&#x20ac;\" ] node [ id 2 label \"&alpha; "
+      "&nix; &\" ]"
+      " ]");
+  EXPECT_THAT(map.labels, ElementsAre("Café & München €€", "α &nix; &"));
+}
+
+// The same graph in every format that has attributes: node a, node b, with what is given, and an edge.
+std::vector<std::string> in_every_format(const std::string& node, const std::string& edge, const std::string& value) {
+  return {
+      fmt::format(R"({{"nodes": [{{"id": "a", "{0}": {2}}}, {{"id": "b"}}],)"
+                  R"("links": [{{"source": "a", "target": "b", "{1}": {2}}}]}})",
+                  node, edge, value),
+      fmt::format("<graphml><key id='n' for='node' attr.name='{0}'/><key id='e' for='edge' attr.name='{1}'/><graph>"
+                  "<node id='a'><data key='n'>{2}</data></node><node id='b'/><edge source='a' target='b'>"
+                  "<data key='e'>{2}</data></edge></graph></graphml>",
+                  node, edge, value),
+      fmt::format("graph {{ a [{0}=\"{2}\"]; b; a -- b [{1}=\"{2}\"] }}", node, edge, value),
+      fmt::format("graph [ node [ id 1 {0} {2} ] node [ id 2 ] edge [ source 1 target 2 {1} {2} ] ]", node, edge,
+                  value)};
+}
+
+TEST(GraphFormats, TakeAttributesByNameOrNot) {
+  for (const std::string& text : in_every_format("score", "length", "3")) {
+    EXPECT_EQ(graph_of(text).prizes, (std::vector<double>{3, 1})) << text;
+    EXPECT_EQ(graph_of(text).graph.max_cost(), 3) << text;
+  }
+  for (const std::string& text : in_every_format("Gold", "Time", "3")) {
+    const GraphMap map = noted_graph(text, {.cost_attribute = "time", .prize_attribute = "gold"}).map;
+    EXPECT_EQ(map.prizes, (std::vector<double>{3, 1})) << text;
+    EXPECT_EQ(map.graph.max_cost(), 3) << text;
+    EXPECT_THAT(error_of([&] { noted_graph(text, {.prize_attribute = "silver"}); }),
+                HasSubstr("no node has this attribute"))
+        << text;
+  }
+  for (const std::string& text : in_every_format("score", "weight", "-3")) {
+    EXPECT_THAT(graph_complaint(text), HasSubstr("expected a number from 0 up, got '-3'")) << text;
+    const GraphMap map = noted_graph(text, {.cost_attribute = "none", .prize_attribute = "none"}).map;
+    EXPECT_THAT(map.prizes, IsEmpty()) << text;
+    EXPECT_FALSE(map.graph.weighted()) << text;
+  }
+}
+
+TEST(GraphFormats, NeverMixKindsOfCoordinates) {
+  const GraphMap map = graph_of(
+      "graph { node [lon=-122, lat=42]; a [x=1, y=2]; b [x=3, y=4, LAT=43]; c [x=5, y=6, lon=7, lat=8]; a -- b -- c }");
+  EXPECT_THAT(map.places.points, ElementsAre(Point{1, 2}, Point{3, 4}, Point{5, 6}));
+  EXPECT_EQ(map.places.unit, "");
+  const GraphMap degrees = graph_of("graph { node [longitude=-122, latitude=42]; a [x=1]; b [x=3, y=4]; a -- b }");
+  EXPECT_THAT(degrees.places.points, ElementsAre(Point{-122, 42}, Point{-122, 42}));
+  EXPECT_EQ(degrees.places.unit, "degrees");
+}
+
+TEST(GraphFormats, SayWhatWasGuessedOrLeftOut) {
+  EXPECT_THAT(noted_graph("graph { a -- b [weight=5]; b -- c [length=7] }").notes,
+              ElementsAre(HasSubstr("costs come from weight and length")));
+  EXPECT_THAT(noted_graph("graph { a [label=x]; b [label=x]; a -- b }").notes,
+              ElementsAre(HasSubstr("the 2 nodes have 1 different labels, so ids name them")));
+  EXPECT_THAT(noted_graph(R"({"nodes": [{"id": "a", "x": 0, "y": 0}, {"id": "b"}], "links": []})").notes,
+              ElementsAre(HasSubstr("only 1 of 2 nodes have coordinates")));
+}
+
+TEST(Pajek, LinesMayEndAsOnOldMachines) {
+  const GraphMap map = graph_of("*Vertices 2\r1 \"a\"\r2 \"b\"\r*Edges\r1 2\r");
+  EXPECT_THAT(map.labels, ElementsAre("a", "b"));
+  EXPECT_EQ(map.graph.edge_count(), 1);
+}
+
+}  // namespace
+}  // namespace graphdrl
