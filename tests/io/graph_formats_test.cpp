@@ -149,6 +149,48 @@ TEST(GraphMl, IsValidXmlWhateverLabelsHold) {
   EXPECT_EQ(graph_of(format_map(map, "x.graphml")).graph.node_count(), 2);
 }
 
+TEST(Gexf, IsRead) {
+  const GraphMap map = graph_of(R"(<?xml version="1.0" encoding="UTF-8"?>
+<gexf xmlns="http://gexf.net/1.3" xmlns:viz="http://gexf.net/1.3/viz" version="1.3">
+  <graph defaultedgetype="undirected">
+    <attributes class="node"><attribute id="0" title="prize" type="float"><default>2</default></attribute></attributes>
+    <attributes class="edge"><attribute id="0" title="blocked" type="string"/></attributes>
+    <nodes>
+      <node id="0" label="dock"><attvalues><attvalue for="0" value="7"/></attvalues>
+        <viz:position x="1" y="-2" z="0"/></node>
+      <node id="1" label="hall"><viz:position x="3" y="4"/><nodes><node id="2" label="desk">
+        <viz:position x="5" y="6"/></node></nodes></node>
+    </nodes>
+    <edges><edge id="0" source="0" target="1" weight="2.5"/><edge source="1" target="2"/></edges>
+  </graph>
+</gexf>)");
+  EXPECT_THAT(map.labels, ElementsAre("dock", "hall", "desk"));
+  EXPECT_THAT(map.prizes, ElementsAre(7, 2, 2));
+  EXPECT_THAT(map.places.points, ElementsAre(Point{1, -2}, Point{3, 4}, Point{5, 6}));
+  EXPECT_FALSE(map.graph.directed());
+  EXPECT_EQ(map.graph.cost(0, 0), 2.5);
+  EXPECT_EQ(map.graph.cost(1, 1), 1);
+}
+
+TEST(Gexf, KnowsDirections) {
+  const GraphMap map = graph_of(
+      "<gexf><graph defaultedgetype='directed'><nodes><node id='a'/><node id='b'/><node id='c'/></nodes><edges>"
+      "<edge source='a' target='b'/><edge source='b' target='c' type='mutual'/></edges></graph></gexf>");
+  EXPECT_TRUE(map.graph.directed());
+  EXPECT_EQ(map.graph.edge_count(), 3);
+}
+
+TEST(Gexf, RefusesWhatIsNoGraph) {
+  EXPECT_THAT(graph_complaint("<gexf>"), HasSubstr("not well formed"));
+  EXPECT_THAT(graph_complaint("<gexf/>"), HasSubstr("no graph"));
+  EXPECT_THAT(graph_complaint("<gexf><graph/></gexf>"), HasSubstr("no free node"));
+  EXPECT_THAT(graph_complaint("<gexf><graph><nodes>\n<node/></nodes></graph></gexf>"),
+              HasSubstr("file:2: a node without an id"));
+  const std::string begin = "<gexf><graph><nodes><node id='a'/></nodes><edges>\n<edge source='a' target=";
+  EXPECT_THAT(graph_complaint(begin + "'b'/></edges></graph></gexf>"), HasSubstr("file:2: no such node"));
+  EXPECT_THAT(graph_complaint(begin + "'a' weight='-1'/></edges></graph></gexf>"), HasSubstr("file:2: bad weight"));
+}
+
 TEST(Gml, KnowsNamedCharacters) {
   const GraphMap map = graph_of(
       "graph [ node [ id 1 label \"Caf&eacute; &amp; M&uuml;nchen &#8364;&#x20ac;\" ] node [ id 2 label \"&alpha; "
@@ -169,7 +211,13 @@ std::vector<std::string> in_every_format(const std::string& node, const std::str
                   node, edge, value),
       fmt::format("graph {{ a [{0}=\"{2}\"]; b; a -- b [{1}=\"{2}\"] }}", node, edge, value),
       fmt::format("graph [ node [ id 1 {0} {2} ] node [ id 2 ] edge [ source 1 target 2 {1} {2} ] ]", node, edge,
-                  value)};
+                  value),
+      fmt::format(
+          "<gexf><graph><attributes class='node'><attribute id='0' title='{0}'/></attributes>"
+          "<attributes class='edge'><attribute id='0' title='{1}'/></attributes><nodes><node id='a'><attvalues>"
+          "<attvalue for='0' value='{2}'/></attvalues></node><node id='b'/></nodes><edges><edge source='a' target='b'>"
+          "<attvalues><attvalue for='0' value='{2}'/></attvalues></edge></edges></graph></gexf>",
+          node, edge, value)};
 }
 
 TEST(GraphFormats, TakeAttributesByNameOrNot) {

@@ -32,6 +32,7 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"moving-ai", "type octile\nheight 1\nwidth 1\nmap\n.\n"},
       {"node-link", "\n {\"nodes\": []}"},
       {"graphml", "<?xml version='1.0'?>\n<!-- a -->\n<graphml/>"},
+      {"gexf", "<?xml version='1.0'?>\n<gexf><graph/></gexf>"},
       {"tsplib", "NAME : a\nTYPE : OP\n"},
       {"dimacs", "c a comment\n\np edge 2 1\ne 1 2\n"},
       {"dimacs", "p sp 2 1\na 1 2 7\n"},

@@ -12,6 +12,7 @@
 #include "graphdrl/io/dimacs.h"
 #include "graphdrl/io/dot.h"
 #include "graphdrl/io/edge_list.h"
+#include "graphdrl/io/gexf.h"
 #include "graphdrl/io/gml.h"
 #include "graphdrl/io/graphml.h"
 #include "graphdrl/io/moving_ai.h"
@@ -57,6 +58,13 @@ constexpr std::array kFormats = {
               .recognise = is_graphml,
               .read = read<parse_graphml>,
               .write_graph = format_graphml,
+              .takes_cost_attribute = true,
+              .takes_prize_attribute = true},
+    MapFormat{.name = "gexf",
+              .ending = ".gexf",
+              .purpose = "any graph as Gephi writes it",
+              .recognise = is_gexf,
+              .read = read<parse_gexf>,
               .takes_cost_attribute = true,
               .takes_prize_attribute = true},
     MapFormat{.name = "png",
