@@ -199,6 +199,44 @@ TEST(Gml, KnowsNamedCharacters) {
   EXPECT_THAT(map.labels, ElementsAre("Café & München €€", "α &nix; &"));
 }
 
+constexpr const char* kWalkerModel = R"({"name": "login", "models": [{"name": "m", "generator": "random(length(1))",
+  START"vertices": [{"id": "v0", "name": "v_Start", "properties": {"x": 1, "y": 2, "blocked": true}},
+                    {"id": "v1", "name": "v_Page", "properties": {"x": 3, "y": 4}}],
+  "edges": [{"id": "e0", "name": "e_Init", "targetVertexId": "v1"},
+            {"id": "e1", "sourceVertexId": "v0", "targetVertexId": "v1", "weight": 0.3},
+            {"id": "e2", "sourceVertexId": "v1", "targetVertexId": "v0", "weight": 0.7}]
+}]
+})";
+
+std::string walker_model(const std::string& start) {
+  std::string text = kWalkerModel;
+  text.replace(text.find("START"), 5, start);
+  return text;
+}
+
+TEST(GraphWalker, ModelsAreDirectedGraphsWithAStart) {
+  const GraphMap map = graph_of(walker_model(""));
+  EXPECT_TRUE(map.graph.directed());
+  EXPECT_THAT(map.labels, ElementsAre("v_Start", "v_Page"));
+  EXPECT_EQ(map.graph.edge_count(), 2);
+  EXPECT_FALSE(map.graph.weighted());  // weights are probabilities
+  EXPECT_THAT(map.places.points, ElementsAre(Point{1, 2}, Point{3, 4}));
+  EXPECT_EQ(map.task.start, 1);
+  EXPECT_EQ(graph_of(walker_model(R"("startElementId": "v0",)")).task.start, 0);
+  EXPECT_EQ(graph_of(walker_model(R"("startElementId": "e0",)")).task.start, 1);
+  EXPECT_EQ(graph_of(walker_model(R"("startElementId": "e2",)")).task.start, 0);
+  EXPECT_EQ(noted_graph(walker_model(""), {.cost_attribute = "weight"}).map.graph.cost(0, 0), 0.3);
+}
+
+TEST(GraphWalker, RefusesWhatIsNoModel) {
+  EXPECT_THAT(graph_complaint(R"({"models": [], "x": {"vertices": 1}})"), HasSubstr("expected one model, got '0'"));
+  EXPECT_THAT(graph_complaint(R"({"models": [{"vertices": 1}]})"), HasSubstr("no list \"vertices\""));
+  EXPECT_THAT(graph_complaint(R"({"models": [{"vertices": [{}], "edges": []}]})"), HasSubstr("vertices[0]: no \"id\""));
+  EXPECT_THAT(graph_complaint(R"({"models": [{"vertices": [{"id": "a"}], "edges": [{"targetVertexId": "b"}]}]})"),
+              HasSubstr("edges[0]: no such node"));
+  EXPECT_THAT(graph_complaint(walker_model(R"("startElementId": "v7",)")), HasSubstr("models[0]: no such node"));
+}
+
 // The same graph in every format that has attributes: node a, node b, with what is given, and an edge.
 std::vector<std::string> in_every_format(const std::string& node, const std::string& edge, const std::string& value) {
   return {

@@ -31,6 +31,7 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"ascii", ""},
       {"moving-ai", "type octile\nheight 1\nwidth 1\nmap\n.\n"},
       {"node-link", "\n {\"nodes\": []}"},
+      {"graph-walker", R"({"models": [{"vertices": []}]})"},
       {"graphml", "<?xml version='1.0'?>\n<!-- a -->\n<graphml/>"},
       {"gexf", "<?xml version='1.0'?>\n<gexf><graph/></gexf>"},
       {"tsplib", "NAME : a\nTYPE : OP\n"},

@@ -14,6 +14,7 @@
 #include "graphdrl/io/edge_list.h"
 #include "graphdrl/io/gexf.h"
 #include "graphdrl/io/gml.h"
+#include "graphdrl/io/graph_walker.h"
 #include "graphdrl/io/graphml.h"
 #include "graphdrl/io/moving_ai.h"
 #include "graphdrl/io/numpy_map.h"
@@ -44,6 +45,12 @@ AnyMap read(std::string_view text, const std::string& source, const MapOptions& 
 }
 
 constexpr std::array kFormats = {
+    MapFormat{.name = "graph-walker",
+              .ending = ".json",
+              .purpose = "GraphWalker's models, from which tests are made",
+              .recognise = is_graph_walker,
+              .read = read<parse_graph_walker>,
+              .takes_cost_attribute = true},
     MapFormat{.name = "node-link",
               .ending = ".json",
               .purpose = "any graph as JSON, as networkx and D3 write it",
