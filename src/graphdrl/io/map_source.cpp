@@ -10,12 +10,12 @@
 #include "graphdrl/graph/grid_transforms.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/map_text.h"
 
 namespace graphdrl {
 namespace {
 
 constexpr std::string_view kPaperLetters = "abcdefghij";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets begin UTF-8 with it
 
 void refuse_option(const char* option, const std::string& what, const std::string& source) {
   throw Error({.what = fmt::format("{} goes with {}", option, what), .where = source});
@@ -75,13 +75,12 @@ void check_options(const MapFormat& format, const MapOptions& options, const std
 }
 
 NamedMap file_map(const std::filesystem::path& path, const MapOptions& options) {
-  const std::string content = read_file(path);
-  std::string_view text = content;
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  const MapFormat& format = format_of(text);
   const std::string source = path.string();
+  const std::string text = map_text(read_file(path), source, options.note);
+  const MapFormat& format = format_of(text);
   check_options(format, options, source);
-  NamedMap named{path.stem().string(), format.read(text, source, options)};
+  const std::filesystem::path name = path.extension() == ".gz" ? path.stem() : path;
+  NamedMap named{name.stem().string(), format.read(text, source, options)};
   shape_map(named.map, options, source);
   return named;
 }
