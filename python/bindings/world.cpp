@@ -5,7 +5,7 @@
 #include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
-#include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/attributes.h"
 #include "graphdrl/report/picture.h"
 
 namespace graphdrl::python {

@@ -13,37 +13,9 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::array<std::string_view, 4> kCostNames = {"weight", "cost", "length", "distance"};
-constexpr std::array<std::string_view, 2> kPrizeNames = {"prize", "score"};
-constexpr std::array<std::string_view, 2> kLabelNames = {"label", "name"};
-constexpr std::array kPlaceNames = {PlaceNames{"x", "y", ""}, PlaceNames{"lon", "lat", "degrees"},
-                                    PlaceNames{"longitude", "latitude", "degrees"}};
 constexpr std::string_view kBlockedName = "blocked";
 
-constexpr std::size_t kNamesShown = 8;  // of attributes, in an error's message
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-char lower(char c) {
-  return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-}
-
-// The place of a name among names; behind the last where it is none of them.
-std::size_t rank_of(std::string_view name, std::span<const std::string_view> names) {
-  const auto found =
-      std::find_if(names.begin(), names.end(), [&](std::string_view one) { return same_name(name, one); });
-  return static_cast<std::size_t>(found - names.begin());
-}
-
-// Which column of coordinates has this name; behind the last where none has.
-std::size_t column_of(std::string_view name) {
-  std::size_t column = 0;
-  for (const PlaceNames& names : kPlaceNames) {
-    if (same_name(name, names.x)) return column;
-    if (same_name(name, names.y)) return column + 1;
-    column += 2;
-  }
-  return column;
-}
 
 // The value of a node in a column that is as long as it must be.
 template <typename Value>
@@ -65,85 +37,14 @@ void erase_where(std::vector<Value>& column, const std::vector<bool>& left_out) 
 
 }  // namespace
 
-std::span<const std::string_view> cost_names() {
-  return kCostNames;
-}
-
-std::span<const std::string_view> prize_names() {
-  return kPrizeNames;
-}
-
-std::span<const std::string_view> label_names() {
-  return kLabelNames;
-}
-
-std::span<const PlaceNames> place_names() {
-  return kPlaceNames;
-}
-
 std::int64_t most_nodes_of(std::string_view text) {
   constexpr std::int64_t kWithoutEdges = 1000;
   return std::min<std::int64_t>(std::ssize(text) + kWithoutEdges, std::numeric_limits<NodeId>::max());
 }
 
-bool same_name(std::string_view one, std::string_view other) {
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
-                    [](char a, char b) { return lower(a) == lower(b); });
-}
-
-bool is_name_of(std::string_view name, std::span<const std::string_view> names) {
-  return rank_of(name, names) < names.size();
-}
-
-bool is_place_name(std::string_view name) {
-  return column_of(name) < 2 * kPlaceNames.size();
-}
-
-AmountNames::AmountNames(std::string wanted, std::span<const std::string_view> usual) : wanted_(std::move(wanted)) {
-  if (wanted_.empty()) names_.assign(usual.begin(), usual.end());
-  if (!wanted_.empty() && wanted_ != kNoAttribute) names_ = {wanted_};
-  used_.resize(names_.size());
-}
-
-const Attribute* AmountNames::best(std::span<const Attribute> attributes) {
-  const Attribute* found = nullptr;
-  std::size_t best = names_.size();
-  for (const Attribute& attribute : attributes) {
-    const std::size_t rank = rank_of(attribute.name, names_);
-    if (rank < names_.size() && rank <= best) {
-      found = &attribute;
-      best = rank;
-    } else if (!wanted_.empty() && others_.size() < kNamesShown &&
-               std::find(others_.begin(), others_.end(), attribute.name) == others_.end()) {
-      others_.push_back(attribute.name);
-    }
-  }
-  if (found != nullptr) used_[best] = true;
-  return found;
-}
-
-void AmountNames::check(const std::string& owner, const std::string& place) const {
-  if (wanted_.empty() || names_.empty() || used_.front()) return;
-  std::string names;
-  for (const std::string& name : others_) names += (names.empty() ? "" : ", ") + escaped(name);
-  throw Error({.what = fmt::format("no {} has this attribute", owner),
-               .expected = names.empty() ? fmt::format("{}s with attributes", owner) : names,
-               .got = in_quotes(wanted_),
-               .where = place});
-}
-
-std::string AmountNames::mixed() const {
-  std::string names;
-  int count = 0;
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    if (used_[i]) names += fmt::format("{}{}", count++ == 0 ? "" : " and ", names_[i]);
-  }
-  return count > 1 ? names : "";
-}
-
 GraphBuilder::GraphBuilder(const MapOptions& options, std::function<std::string()> place)
-    : costs_(options.cost_attribute, kCostNames),
-      prizes_(options.prize_attribute, kPrizeNames),
+    : costs_(options.cost_attribute, cost_names()),
+      prizes_(options.prize_attribute, prize_names()),
       note_(options.note),
       place_(std::move(place)) {}
 
@@ -198,7 +99,7 @@ double GraphBuilder::number(const Attribute& attribute, bool may_be_negative) co
 }
 
 bool GraphBuilder::uses_of_node(std::string_view name) const {
-  return prizes_.knows(name) || is_name_of(name, kLabelNames) || is_place_name(name) || same_name(name, kBlockedName);
+  return prizes_.knows(name) || is_name_of(name, label_names()) || is_place_name(name) || same_name(name, kBlockedName);
 }
 
 void GraphBuilder::set_node(NodeId node, std::span<const Attribute> attributes) {
@@ -206,10 +107,10 @@ void GraphBuilder::set_node(NodeId node, std::span<const Attribute> attributes) 
     at(prize_, node, 1.0) = number(*prize, /*may_be_negative=*/false);
   }
   for (const Attribute& attribute : attributes) {
-    if (const std::size_t rank = rank_of(attribute.name, kLabelNames); rank < kLabelNames.size()) {
+    if (const std::size_t rank = rank_of(attribute.name, label_names()); rank < label_names().size()) {
       std::string& label = at(label_, node, std::string());
       if (label.empty() || rank == 0) label = attribute.value;
-    } else if (const std::size_t column = column_of(attribute.name); column < places_.size()) {
+    } else if (const std::size_t column = place_column(attribute.name); column < kPlaceColumns) {
       at(places_[column], node, kMissing) = number(attribute, /*may_be_negative=*/true);
     } else if (same_name(attribute.name, kBlockedName)) {
       const std::string_view text = trimmed(attribute.value);
@@ -277,10 +178,10 @@ std::vector<std::string> GraphBuilder::take_labels() {
 
 Places GraphBuilder::take_places() {
   NodeId most = 0;
-  for (std::size_t kind = 0; kind < kPlaceNames.size(); ++kind) {
+  for (std::size_t kind = 0; kind < place_names().size(); ++kind) {
     const std::vector<double>& x = places_[2 * kind];
     const std::vector<double>& y = places_[2 * kind + 1];
-    Places places{.points = {}, .unit = unit_.empty() ? std::string(kPlaceNames[kind].unit) : unit_};
+    Places places{.points = {}, .unit = unit_.empty() ? std::string(place_names()[kind].unit) : unit_};
     for (std::size_t node = 0; node < std::min(x.size(), y.size()); ++node) {
       if (!std::isnan(x[node]) && !std::isnan(y[node])) places.points.push_back({x[node], y[node]});
     }

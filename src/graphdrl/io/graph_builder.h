@@ -1,68 +1,25 @@
-// What the readers of graph files share: nodes, edges and their attributes, by the names that programs give them.
+// Makes graphs of what files say of nodes, edges and their attributes.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "graphdrl/io/attributes.h"
 #include "graphdrl/io/map_options.h"
 #include "graphdrl/io/node_ids.h"
 #include "graphdrl/io/node_link.h"
 
 namespace graphdrl {
 
-// The one list of what attributes mean. The first name is the best; case does not count.
-std::span<const std::string_view> cost_names();   // weight, cost, length, distance
-std::span<const std::string_view> prize_names();  // prize, score
-std::span<const std::string_view> label_names();  // label, name
-struct PlaceNames {
-  std::string_view x;
-  std::string_view y;
-  std::string_view unit;  // empty where the names do not tell it
-};
-std::span<const PlaceNames> place_names();  // x and y; lon and lat; longitude and latitude
-
 // The most nodes that a file may claim, for one that claims more memory than it fills: as many as its bytes, and some
 // without edges.
 std::int64_t most_nodes_of(std::string_view text);
-
-// Whether two names differ in case at most.
-bool same_name(std::string_view one, std::string_view other);
-bool is_name_of(std::string_view name, std::span<const std::string_view> names);
-bool is_place_name(std::string_view name);
-
-struct Attribute {
-  std::string name;
-  std::string value;
-};
-
-// Which attribute is a cost or a prize: the one asked for, none, or the best of the usual names.
-class AmountNames {
- public:
-  // wanted: empty for the usual names, kNoAttribute for none.
-  AmountNames(std::string wanted, std::span<const std::string_view> usual);
-  AmountNames(const AmountNames&) = delete;  // names_ may point at wanted_
-
-  bool knows(std::string_view name) const { return is_name_of(name, names_); }
-  // The one that counts, the last of those with the best name; null where there is none.
-  const Attribute* best(std::span<const Attribute> attributes);
-  // Throws Error where the one asked for was never met. owner: "edge" or "node".
-  void check(const std::string& owner, const std::string& place) const;
-  // "weight and length" where more than one of them was used; else empty.
-  std::string mixed() const;
-
- private:
-  std::string wanted_;
-  std::vector<std::string_view> names_;
-  std::vector<bool> used_;           // [names_]
-  std::vector<std::string> others_;  // some that were met where one was asked for, for an error's message
-};
 
 // Makes a graph of what a file says, in any order but nodes before their edges.
 class GraphBuilder {
@@ -128,7 +85,7 @@ class GraphBuilder {
   std::vector<bool> blocked_;
   std::vector<double> prize_;
   std::vector<std::string> label_;
-  std::array<std::vector<double>, 6> places_;  // x and y by place_names(); NaN where there is none
+  std::array<std::vector<double>, kPlaceColumns> places_;  // x and y by place_names(); NaN where there is none
 };
 
 }  // namespace graphdrl

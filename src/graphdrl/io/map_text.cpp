@@ -61,7 +61,7 @@ std::string gunzipped(std::string_view packed, const std::string& source) {
 std::string unpacked(std::string bytes, const std::string& source) {
   for (const Archive& archive : kOtherArchives) {
     if (!bytes.starts_with(archive.begin)) continue;
-    throw Error({.what = archive.what, .expected = "what is in it, unpacked or gzipped", .where = source});
+    throw Error({.what = archive.what, .expected = "the file in it, unpacked or gzipped", .where = source});
   }
   if (bytes.starts_with("\x1F\x8B")) return gunzipped(bytes, source);
   return bytes;

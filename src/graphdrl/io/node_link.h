@@ -33,7 +33,7 @@ struct NodeColumn {
 // "weight": 2}, …]}
 //
 // Nodes are numbered as they stand. Ids are whole numbers, texts or lists of them, which become texts like "(0, 1)".
-// Attributes by their usual names [graph_builder.h]; {"graph": {"unit": "m"}} is the coordinates' unit; `links` may be
+// Attributes by their usual names [attributes.h]; {"graph": {"unit": "m"}} is the coordinates' unit; `links` may be
 // called `edges`; keys may stand in any order, others are skipped. Throws Error, naming `source` and the place, on
 // anything else, on an id used twice and on a graph without a free node. Cost: linear, without a copy of the document;
 // the text is read twice where links stand before nodes.

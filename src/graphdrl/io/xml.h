@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/attributes.h"
 
 namespace graphdrl {
 
