@@ -199,14 +199,12 @@ TEST(Gml, KnowsNamedCharacters) {
   EXPECT_THAT(map.labels, ElementsAre("Café & München €€", "α &nix; &"));
 }
 
-constexpr const char* kWalkerModel = R"({"name": "login", "models": [{"name": "m", "generator": "random(length(1))",
+constexpr const char* kWalkerModel = R"({"name": "login", "models": [{"name": "m", "generator": "quick_random",
   START"vertices": [{"id": "v0", "name": "v_Start", "properties": {"x": 1, "y": 2, "blocked": true}},
                     {"id": "v1", "name": "v_Page", "properties": {"x": 3, "y": 4}}],
   "edges": [{"id": "e0", "name": "e_Init", "targetVertexId": "v1"},
             {"id": "e1", "sourceVertexId": "v0", "targetVertexId": "v1", "weight": 0.3},
-            {"id": "e2", "sourceVertexId": "v1", "targetVertexId": "v0", "weight": 0.7}]
-}]
-})";
+            {"id": "e2", "sourceVertexId": "v1", "targetVertexId": "v0", "weight": 0.7}]}]})";
 
 std::string walker_model(const std::string& start) {
   std::string text = kWalkerModel;
