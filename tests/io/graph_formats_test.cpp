@@ -140,7 +140,10 @@ TEST(GraphMl, IsValidXmlWhateverLabelsHold) {
                .blocked = std::vector<bool>(count),
                .labels = labels};
   const std::string text = format_map(map, "x.graphml");
-  for (std::uint32_t code = 0; code < 32; ++code) EXPECT_THAT(text, Not(HasSubstr(fmt::format("&#{};", code)))) << code;
+  for (std::uint32_t code = 0; code < 32; ++code) {
+    if (code == '\t' || code == '\n' || code == '\r') continue;
+    EXPECT_THAT(text, Not(HasSubstr(fmt::format("&#{};", code)))) << code;
+  }
   const GraphMap again = graph_of(text);
   EXPECT_THAT(again.labels, ElementsAre("a␁b", "nul␀l", "�", "�!", "a\tb", "a\nb", "a\rb", "a b", "␛[31m <&>\"'"));
   map.labels = {"\xFE", "\xFF"};
