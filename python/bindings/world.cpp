@@ -5,6 +5,7 @@
 #include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
+#include "graphdrl/io/attributes.h"
 #include "graphdrl/report/picture.h"
 
 namespace graphdrl::python {
@@ -55,9 +56,9 @@ World graph(std::string name, std::int64_t node_count, const InArray<std::int64_
   return world_of(std::move(arrays));
 }
 
-World from_file(const std::string& path, const std::string& cost_attribute, int cell_pixels, bool unknown_is_free,
-                double robot_radius, std::optional<double> cell_size, int connectivity, bool cut_corners,
-                const nb::object& note) {
+World from_file(const std::string& path, const std::string& cost_attribute, const std::string& prize_attribute,
+                int cell_pixels, bool unknown_is_free, double robot_radius, std::optional<double> cell_size,
+                int connectivity, bool cut_corners, const nb::object& note) {
   if (connectivity != 4 && connectivity != 8) {
     throw Error({.what = "bad connectivity", .expected = "4 or 8", .got = std::to_string(connectivity)});
   }
@@ -65,6 +66,7 @@ World from_file(const std::string& path, const std::string& cost_attribute, int 
     throw Error({.what = "bad option of a map", .expected = "cell sizes above 0, a radius from 0 up", .where = path});
   }
   MapOptions options{.cost_attribute = cost_attribute,
+                     .prize_attribute = prize_attribute,
                      .cell_pixels = cell_pixels,
                      .unknown_is_free = unknown_is_free,
                      .robot_radius = robot_radius,
@@ -133,9 +135,9 @@ void bind_worlds(nb::module_& module) {
       .def_static("graph", &graph, nb::arg("name"), nb::arg("node_count"), nb::arg("edges"), nb::arg("costs"),
                   nb::arg("directed"), nb::arg("blocked"), nb::arg("labels"), nb::arg("prizes"), nb::arg("places"),
                   nb::arg("unit"), nb::arg("given"))
-      .def_static("from_file", &from_file, nb::arg("path"), nb::arg("cost_attribute"), nb::arg("cell_pixels"),
-                  nb::arg("unknown_is_free"), nb::arg("robot_radius"), nb::arg("cell_size").none(),
-                  nb::arg("connectivity"), nb::arg("cut_corners"), nb::arg("note"))
+      .def_static("from_file", &from_file, nb::arg("path"), nb::arg("cost_attribute"), nb::arg("prize_attribute"),
+                  nb::arg("cell_pixels"), nb::arg("unknown_is_free"), nb::arg("robot_radius"),
+                  nb::arg("cell_size").none(), nb::arg("connectivity"), nb::arg("cut_corners"), nb::arg("note"))
       .def_static("random", &random, nb::arg("family"), nb::arg("size"), nb::arg("seed"), nb::arg("weighted"),
                   nb::arg("directed"), nb::arg("blocked").none())
       .def_prop_ro("name", &World::name)
@@ -170,6 +172,15 @@ void bind_worlds(nb::module_& module) {
   std::vector<std::string> names;
   for (const WorldFamily& family : world_families()) names.emplace_back(family.name);
   module.attr("FAMILIES") = nb::cast(names);
+  // What attributes of files mean.
+  const auto texts = [](std::span<const std::string_view> all) {
+    return nb::cast(std::vector(all.begin(), all.end()));
+  };
+  module.attr("COST_NAMES") = texts(cost_names());
+  module.attr("PRIZE_NAMES") = texts(prize_names());
+  nb::list places;
+  for (const PlaceNames& one : place_names()) places.append(nb::make_tuple(one.x, one.y, one.unit));
+  module.attr("PLACE_NAMES") = places;
 }
 
 }  // namespace graphdrl::python

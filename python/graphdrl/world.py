@@ -25,9 +25,6 @@ from .checks import (
     wrong,
 )
 
-_COST_NAMES = ("weight", "cost", "length", "distance")
-_PRIZE_NAMES = ("prize", "score")
-_PLACE_NAMES = (("x", "y"), ("lon", "lat"))
 _NO_NODE = -1
 
 Node = Hashable
@@ -228,13 +225,13 @@ class World:
     ) -> World:
         """A graph of networkx, of any of its four classes. The world does not change with it afterwards.
 
-        Coordinates are the nodes' `pos`, or `x` and `y`, or `lon` and `lat`, where all nodes have them; else they are
-        left out, with a warning. Of parallel edges the cheapest stays.
+        Coordinates are the nodes' `pos`, or `x` and `y`, or `lon` and `lat`, or `longitude` and `latitude`, where all
+        nodes have them; else they are left out, with a warning. Of parallel edges the cheapest stays.
 
         Args:
             graph: its nodes become the world's labels.
-            cost: the edges' attribute; by default the first of `weight`, `cost`, `length` and `distance` that an edge
-                has. An edge without it costs 1; with `"none"` every edge does.
+            cost: the edges' attribute; by default, as of files, the first of `weight`, `cost`, `length` and `distance`
+                that an edge has. An edge without it costs 1; with `"none"` every edge does.
             prize: the nodes' attribute; by default `prize` or `score`. A node without it is worth 1; with `"none"`
                 every node is.
             blocked: the nodes' attribute for obstacles.
@@ -250,17 +247,17 @@ class World:
         numbers = {label: number for number, label in enumerate(labels)}
         links = list(graph.edges(data=True))
         data = [graph.nodes[label] for label in labels]
-        cost = _attribute(cost, _COST_NAMES, [of_edge for _, _, of_edge in links], "cost", "edge")
-        prize = _attribute(prize, _PRIZE_NAMES, data, "prize", "node")
+        costs = _amounts(cost, _core.COST_NAMES, [of_edge for _, _, of_edge in links], "cost", "edge")
+        prizes = _amounts(prize, _core.PRIZE_NAMES, data, "prize", "node")
         text(blocked, "blocked")
         places, unit = _places_of(data)
         return cls.from_edges(
             [(numbers[a], numbers[b]) for a, b, _ in links],
-            None if cost is None else [number(of_edge.get(cost, 1), cost) for _, _, of_edge in links],
+            costs,
             node_count=len(labels),
             directed=graph.is_directed(),
             blocked=[_is_blocked(of_node.get(blocked, False), blocked) for of_node in data],
-            prizes=None if prize is None else [number(of_node.get(prize, 1), prize) for of_node in data],
+            prizes=prizes,
             places=places,
             unit=unit,
             labels=None if labels == list(range(len(labels))) and all(type(x) is int for x in labels) else labels,
@@ -293,6 +290,7 @@ class World:
         path: str | os.PathLike[str],
         *,
         cost_attribute: str = "",
+        prize_attribute: str = "",
         cell_pixels: int = 1,
         unknown_is_free: bool = False,
         robot_radius: float = 0.0,
@@ -304,7 +302,8 @@ class World:
 
         Args:
             path: the file, or `paper:a` to `paper:j`, the paper's maps.
-            cost_attribute: of graphs: the edges' attribute that is their cost.
+            cost_attribute: of graphs: the edges' attribute that is their cost; `"none"`: each costs 1.
+            prize_attribute: of graphs: the nodes' attribute that is their prize; `"none"`: each is worth 1.
             cell_pixels: of pictures: pixels a side of a cell.
             unknown_is_free: of ROS maps: walks may pass unknown cells.
             robot_radius: of grids: obstacles grow by this, in the map's unit, or in cells where it has none.
@@ -319,6 +318,7 @@ class World:
         core = _core.World.from_file(
             path_text(path),
             text(cost_attribute, "cost_attribute"),
+            text(prize_attribute, "prize_attribute"),
             whole_number(cell_pixels, "cell_pixels", 1, LARGEST_INT),
             flag(unknown_is_free, "unknown_is_free"),
             number(robot_radius, "robot_radius"),
@@ -578,17 +578,31 @@ def _texts(labels: Sequence[Node] | None) -> list[str]:
     return [text(label, "label") for label in texts] if all(texts) and len(set(texts)) == len(texts) else []
 
 
-def _attribute(
+def _spellings(usual: Sequence[str], data: Sequence[dict[str, Any]]) -> list[str]:
+    """The attributes with the usual names, the best first; case does not count."""
+    met = sorted({key for of_one in data for key in of_one if isinstance(key, str)})
+    return [key for name in usual for key in met if key.lower() == name]
+
+
+def _amounts(
     name: str | None, usual: Sequence[str], data: Sequence[dict[str, Any]], role: str, owner: str
-) -> str | None:
-    """The attribute of edges or nodes that is a role: as named, or the first of the usual ones; None for 1 each."""
+) -> list[float] | None:
+    """What each edge costs or each node is worth: by the attribute named, or its best usual one; None for 1 each."""
     if name is None:
-        return next((key for key in usual if any(key in of_one for of_one in data)), None)
-    if text(name, role) == "none" or not data:
-        return None
-    if not any(name in of_one for of_one in data):
+        names = _spellings(usual, data)
+    elif text(name, role) == "none" or not data:
+        names = []
+    elif any(name in of_one for of_one in data):
+        names = [name]
+    else:
         raise Error(f"bad {role}: no {owner} has this attribute: {shown(name)}")
-    return name
+    chosen = [next((key for key in names if key in of_one), None) for of_one in data]
+    used = [key for key in names if key in chosen]
+    if len(used) > 1:
+        _warn(f"{role}s come from {' and '.join(used)}")
+    if not used:
+        return None
+    return [1.0 if key is None else number(of_one[key], key) for of_one, key in zip(data, chosen, strict=True)]
 
 
 def _is_blocked(value: Any, name: str) -> bool:
@@ -608,10 +622,10 @@ def _places_of(data: Sequence[dict[str, Any]]) -> tuple[NDArray[np.float64] | No
         why = f"a node's pos is not x and y: {shown(strange[0])}" if strange else None
     elif having:
         why = f"pos is on {len(having)} of {len(data)} nodes"
-    for x, y in _PLACE_NAMES:
+    for *pair, unit in _core.PLACE_NAMES:
+        x, y = ((_spellings([name], data) or [name])[0] for name in pair)
         count = sum(x in of_node and y in of_node for of_node in data)
         if data and count == len(data):
-            unit = "degrees" if x == "lon" else ""
             return np.array([[number(of_node[x], x), number(of_node[y], y)] for of_node in data]), unit
         if count:
             why = why or f"{x} and {y} are on {count} of {len(data)} nodes"

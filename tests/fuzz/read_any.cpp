@@ -13,6 +13,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/map_formats.h"
+#include "graphdrl/io/map_text.h"
 #include "graphdrl/io/safetensors.h"
 #include "graphdrl/report/plan_files.h"
 
@@ -75,6 +76,7 @@ std::map<std::string, Reader, std::less<>> all_readers() {
   for (const MapFormat& format : map_formats()) {
     readers.emplace(format.name, [&format](const std::string& text) { read_map(format, text); });
   }
+  readers.emplace("map-text", [](const std::string& bytes) { map_text(bytes, "input", {}); });
   readers.emplace("safetensors", [](const std::string& text) { Safetensors::parse(text, "input"); });
   readers.emplace("plan", read_plan_text);
   return readers;

@@ -31,7 +31,9 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"ascii", ""},
       {"moving-ai", "type octile\nheight 1\nwidth 1\nmap\n.\n"},
       {"node-link", "\n {\"nodes\": []}"},
+      {"graph-walker", R"({"models": [{"vertices": []}]})"},
       {"graphml", "<?xml version='1.0'?>\n<!-- a -->\n<graphml/>"},
+      {"gexf", "<?xml version='1.0'?>\n<gexf><graph/></gexf>"},
       {"tsplib", "NAME : a\nTYPE : OP\n"},
       {"dimacs", "c a comment\n\np edge 2 1\ne 1 2\n"},
       {"dimacs", "p sp 2 1\na 1 2 7\n"},
@@ -189,7 +191,7 @@ TEST(GraphMl, MixesEdgesOneWayAndBothWays) {
   EXPECT_TRUE(map.graph.neighbours(2).empty());
 }
 
-TEST(GraphMl, RefusesWhatIsNoFlatGraph) {
+TEST(GraphMl, RefusesWhatIsNoGraph) {
   const auto complaint = [](const std::string& graph) {
     return error_of([&] { read("<graphml>\n<key id='w' for='edge' attr.name='weight'/>" + graph + "</graphml>"); });
   };
@@ -199,7 +201,6 @@ TEST(GraphMl, RefusesWhatIsNoFlatGraph) {
   EXPECT_THAT(complaint("<graph/>"), HasSubstr("no free node"));
   EXPECT_THAT(complaint("<graph><node/></graph>"), HasSubstr("file:2: a node without an id"));
   EXPECT_THAT(complaint("<graph><node id='a'/>\n<node id='a'/></graph>"), HasSubstr("file:3: an id used twice"));
-  EXPECT_THAT(complaint("<graph><node id='a'><graph/></node></graph>"), HasSubstr("a graph within a node"));
   EXPECT_THAT(complaint("<graph><node id='a'/><hyperedge/></graph>"), HasSubstr("more than two nodes"));
   EXPECT_THAT(complaint("<graph><node id='a'/><edge source='a' target='b'/></graph>"),
               HasSubstr("no such node: expected the id of a node, got 'b'"));
@@ -375,7 +376,7 @@ TEST(MapFormats, KeepGraphs) {
     const std::vector<Edge> edges = {{0, 1, 0.1}, {1, 2, 3}, {2, 0, 1e-9}};
     const GraphMap map{.graph = Graph::from_edges(3, edges, kind),
                        .blocked = {false, true, false},
-                       .labels = {"<a> & \"b\"", "Süd", "7"},
+                       .labels = {"<a>\t& \"b\"", "Süd\\N", "7"},
                        .prizes = {1, 0.25, 1e6},
                        .places = {.points = {{0.1, -2}, {1e-7, 3}, {4, 5}}, .unit = "m"}};
     for (const MapFormat& format : map_formats()) {

@@ -308,6 +308,27 @@ def test_attributes_that_only_some_have():
     assert graphdrl.World.from_networkx(nx.empty_graph(2), cost="weight").edge_count == 0
 
 
+def test_attributes_mean_the_same_in_files_and_in_networkx(tmp_path):
+    graph = nx.path_graph(4)
+    graph.edges[0, 1]["weight"] = 5.0
+    graph.edges[1, 2].update(length=7.0, weight=2.0)
+    graph.edges[2, 3]["Distance"] = 3.0
+    for node, data in graph.nodes(data=True):
+        data.update(lon=-122.0, lat=42.0 + node, x=float(node), y=1.0, score=float(node))
+    graph.nodes[0]["Prize"] = 9.0
+    nx.write_graphml(graph, tmp_path / "some.graphml")
+    with pytest.warns(UserWarning, match="costs come from weight and distance"):
+        by_file = graphdrl.World.from_file(tmp_path / "some.graphml")
+    with pytest.warns(UserWarning, match="prizes come from Prize and score"):
+        world = graphdrl.World.from_networkx(graph)
+    for one in (by_file, world):
+        assert one.edges()[1].tolist() == [5, 2, 3]
+        assert one.prizes.tolist() == [9, 1, 2, 3]
+        assert one.places.tolist() == [[0, 1], [1, 1], [2, 1], [3, 1]]
+    plain = graphdrl.World.from_file(tmp_path / "some.graphml", cost_attribute="none", prize_attribute="none")
+    assert not plain.weighted and plain.total_prize == 4
+
+
 @pytest.mark.parametrize(
     ("places", "why"),
     [

@@ -109,7 +109,12 @@ void add_map_options(CLI::App& command, MapOptions& options) {
     return good ? std::string() : fmt::format("expected a number above 0, got {}", in_quotes(text));
   };
   add("--cost-attribute", options.cost_attribute,
-      "Of graphs: the edges' attribute that is their cost (default: weight, cost, length or distance)")
+      "Of graphs: the edges' attribute that is their cost; none: each costs 1 (default: weight, cost, length or "
+      "distance)")
+      ->check(not_empty())
+      ->type_name("NAME");
+  add("--prize-attribute", options.prize_attribute,
+      "Of graphs: the nodes' attribute that is their prize; none: each is worth 1 (default: prize or score)")
       ->check(not_empty())
       ->type_name("NAME");
   command

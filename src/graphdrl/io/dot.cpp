@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <utility>
 
 #include "graphdrl/base/error.h"
@@ -28,7 +29,8 @@ class DotTokens {
   DotTokens(std::string_view text, const std::string& source) : text_(text), source_(source) { next(); }
 
   Kind kind() const { return kind_; }
-  const std::string& word() const { return word_; }  // of an id without its quotes; a sign
+  // Of an id without its quotes, two backslashes for one; a sign.
+  const std::string& word() const { return word_; }
   bool is(std::string_view sign) const { return kind_ == Kind::kSign && word_ == sign; }
   // Keywords stand without quotes, in any case.
   bool is_keyword(std::string_view keyword) const {
@@ -96,6 +98,7 @@ class DotTokens {
         if (text_[at_] == '"') break;
         const char after = at_ + 1 < text_.size() ? text_[at_ + 1] : '\0';
         const bool escape = text_[at_] == '\\' && (after == '"' || after == '\\' || after == '\n');
+        if (escape && after == '\\') word_ += '\\';
         if (escape) ++at_;
         if (!escape || after != '\n') word_ += text_[at_];
       }
@@ -119,6 +122,7 @@ class DotTokens {
       if (at_ == text_.size()) fail("a text that does not end", "'>'");
       if (text_[at_] == '<') ++depth;
       if (text_[at_] == '>') --depth;
+      if (text_[at_] == '\\') word_ += '\\';
       word_ += text_[at_++];
     } while (depth > 0);
     word_.erase(0, 1);
@@ -134,11 +138,27 @@ class DotTokens {
   bool quoted_ = false;
 };
 
+// A text without its escapes; `\N` of a label is the node's name.
+std::string unescaped(std::string_view text, std::string_view node_name = "\\N") {
+  std::string result;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const std::string_view two = text.substr(at, 2);
+    if (two == "\\N") {
+      result += node_name;
+    } else {
+      result += text[at];
+    }
+    if (two == "\\N" || two == "\\\\") ++at;
+  }
+  return result;
+}
+
 class DotReader {
  public:
   DotReader(std::string_view text, const std::string& source, const MapOptions& options)
       : tokens_(text, source),
         most_edges_(kMostEdgesPerByte * std::ssize(text)),
+        note_(options.note),
         builder_(options, [this] { return tokens_.place(); }) {}
 
   GraphMap read() {
@@ -150,22 +170,18 @@ class DotReader {
     Scope scope;
     read_body(scope);
     if (tokens_.kind() != DotTokens::Kind::kEnd) tokens_.fail("more than one graph", "the end of the file");
-    GraphMap map = builder_.build();
-    if (!map.places.points.empty()) map.places.unit = unit_;
-    return map;
+    if (directed_) take_start();
+    return builder_.build();
   }
 
  private:
-  struct Attribute {
-    std::string name;
-    std::string value;
-  };
   using Attributes = std::vector<Attribute>;
-  // What a graph within the graph takes from those around it, and the nodes that it names.
+  // A graph: its defaults, the nodes that it names, and the graphs within it.
   struct Scope {
     Attributes of_nodes;
     Attributes of_edges;
     std::vector<NodeId> nodes;
+    std::map<std::string, Scope> subgraphs;  // by name
   };
 
   void expect(std::string_view sign, const std::string& what) {
@@ -175,7 +191,7 @@ class DotReader {
 
   std::string take_id(const std::string& what) {
     if (tokens_.kind() != DotTokens::Kind::kId) tokens_.fail(what, "a name, a number or a text in quotes");
-    std::string word = tokens_.word();
+    std::string word = unescaped(tokens_.word());
     tokens_.next();
     return word;
   }
@@ -204,7 +220,6 @@ class DotReader {
     }
     const bool graph = tokens_.is("{") || tokens_.is_keyword("subgraph");
     std::vector<NodeId> from;
-    bool fresh = false;
     if (graph) {
       from = read_subgraph(scope);
     } else {
@@ -214,16 +229,16 @@ class DotReader {
         set_graph({name, take_id("an attribute without a value")});
         return;
       }
-      from = {node_of(name, scope)};
-      fresh = true;
+      from = read_nodes(name, scope);
     }
-    if (!tokens_.is_edge()) {
-      Attributes attributes;
-      if (fresh) read_attributes(attributes);
-      for (const Attribute& attribute : attributes) set_node(from.front(), attribute);
+    if (tokens_.is_edge()) {
+      read_edges(std::move(from), scope);
       return;
     }
-    read_edges(std::move(from), scope);
+    Attributes attributes;
+    read_attributes(attributes);
+    if (graph) return;  // of the graph itself
+    for (const NodeId node : from) set_node(node, attributes);
   }
 
   void read_edges(std::vector<NodeId> from, Scope& scope) {
@@ -234,14 +249,8 @@ class DotReader {
       }
       tokens_.next();
       const bool graph = tokens_.is("{") || tokens_.is_keyword("subgraph");
-      std::vector<NodeId> to;
-      if (graph) {
-        to = read_subgraph(scope);
-      } else {
-        to = {node_of(take_id("an edge to nowhere"), scope)};
-      }
-      edges_ += std::ssize(from) * std::ssize(to);
-      if (edges_ > most_edges_) tokens_.fail("far more edges than a file of this size holds", "fewer");
+      std::vector<NodeId> to = graph ? read_subgraph(scope) : read_nodes(take_id("an edge to nowhere"), scope);
+      spend(std::ssize(from) * std::ssize(to));
       for (const NodeId one : from) {
         for (const NodeId other : to) edges.emplace_back(one, other);
       }
@@ -251,22 +260,48 @@ class DotReader {
     read_attributes(attributes);
     for (const auto& [one, other] : edges) {
       builder_.add_edge(one, other, directed_);
-      for (const Attribute& attribute : attributes) builder_.set_edge(attribute.name, attribute.value);
+      builder_.set_edge(attributes);
+      if (starts_.contains(other)) starts_.at(other).reached = true;
+      if (starts_.contains(one)) starts_.at(one).targets.push_back(other);
     }
   }
 
-  // The nodes that it names, each once.
+  void spend(std::int64_t edges) {
+    edges_ += edges;
+    if (edges_ > most_edges_) tokens_.fail("far more edges than a file of this size holds", "fewer");
+  }
+
+  // The nodes that it names, each once. A graph named again is the one before, and goes on with its defaults.
   std::vector<NodeId> read_subgraph(Scope& scope) {
+    std::string name;
     if (tokens_.is_keyword("subgraph")) {
       tokens_.next();
-      if (tokens_.kind() == DotTokens::Kind::kId) tokens_.next();
+      if (tokens_.kind() == DotTokens::Kind::kId) name = take_id("");
     }
-    Scope inner{.of_nodes = scope.of_nodes, .of_edges = scope.of_edges, .nodes = {}};
+    Scope unnamed;
+    Scope& inner = name.empty() ? unnamed : scope.subgraphs[name];
+    inner.of_nodes.insert(inner.of_nodes.begin(), scope.of_nodes.begin(), scope.of_nodes.end());
+    inner.of_edges.insert(inner.of_edges.begin(), scope.of_edges.begin(), scope.of_edges.end());
+    const auto nodes_around = std::ssize(scope.of_nodes);
+    const auto edges_around = std::ssize(scope.of_edges);
     read_body(inner);
+    inner.of_nodes.erase(inner.of_nodes.begin(), inner.of_nodes.begin() + nodes_around);
+    inner.of_edges.erase(inner.of_edges.begin(), inner.of_edges.begin() + edges_around);
     std::sort(inner.nodes.begin(), inner.nodes.end());
     inner.nodes.erase(std::unique(inner.nodes.begin(), inner.nodes.end()), inner.nodes.end());
+    spend(std::ssize(inner.nodes));  // a graph may be named again and again
     scope.nodes.insert(scope.nodes.end(), inner.nodes.begin(), inner.nodes.end());
-    return std::move(inner.nodes);
+    return inner.nodes;
+  }
+
+  // A list of nodes: "a, b:port".
+  std::vector<NodeId> read_nodes(const std::string& first, Scope& scope) {
+    std::vector<NodeId> nodes = {node_of(first, scope)};
+    while (tokens_.is(",")) {
+      tokens_.next();
+      nodes.push_back(node_of(take_id("not a node after a comma"), scope));
+    }
+    return nodes;
   }
 
   // The node of this name, and its port skipped.
@@ -274,7 +309,8 @@ class DotReader {
     const NodeId before = builder_.node_count();
     const NodeId node = builder_.node_or_new(name);
     if (node == before) {
-      for (const Attribute& attribute : scope.of_nodes) set_node(node, attribute);
+      if (name.starts_with("__start")) starts_[node] = {};
+      set_node(node, scope.of_nodes);
     }
     scope.nodes.push_back(node);
     for (int i = 0; i < 2 && tokens_.is(":"); ++i) {
@@ -291,7 +327,9 @@ class DotReader {
         Attribute attribute{.name = take_id("not an attribute"), .value = "true"};
         if (tokens_.is("=")) {
           tokens_.next();
-          attribute.value = take_id("an attribute without a value");
+          if (tokens_.kind() != DotTokens::Kind::kId) take_id("an attribute without a value");
+          attribute.value = tokens_.word();  // with its escapes
+          tokens_.next();
         }
         attributes.push_back(std::move(attribute));
         if (tokens_.is(",") || tokens_.is(";")) tokens_.next();
@@ -301,28 +339,57 @@ class DotReader {
   }
 
   void set_graph(const Attribute& attribute) {
-    if (attribute.name == "unit" && depth_ == 1) unit_ = attribute.value;
+    if (attribute.name == "unit" && depth_ == 1) builder_.set_unit(attribute.value);
   }
 
-  void set_node(NodeId node, const Attribute& attribute) {
-    if (attribute.name != "pos") {
-      if (attribute.value != "\\N") builder_.set_node(node, attribute.name, attribute.value);  // \N: the node's name
-      return;
+  void set_node(NodeId node, const Attributes& attributes) {
+    Attributes plain;
+    for (const auto& [name, value] : attributes) {
+      const std::size_t comma = value.find(',');
+      if (name != "pos") {
+        if (value == "\\N") continue;  // the node's name, which it has already
+        plain.push_back({name, unescaped(value, builder_.id(node))});
+        const auto start = starts_.find(node);
+        if (start != starts_.end() && name == "label") start->second.labelled = !value.empty();
+      } else if (comma != std::string::npos) {  // "x,y", and what may follow
+        const std::string y = value.substr(comma + 1);
+        plain.push_back({"x", value.substr(0, comma)});
+        plain.push_back({"y", y.substr(0, y.find_first_of(",!"))});
+      }
     }
-    const std::string_view place = attribute.value;  // "x,y", and what may follow
-    const std::size_t comma = place.find(',');
-    if (comma == std::string_view::npos) return;
-    const std::string_view y = place.substr(comma + 1);
-    builder_.set_node(node, "x", place.substr(0, comma));
-    builder_.set_node(node, "y", y.substr(0, y.find_first_of(",!")));
+    builder_.set_node(node, plain);
   }
+
+  // A node `__start…` without a label that no edge leads to is no state: it points at the one where a model begins.
+  void take_start() {
+    NodeId start = kNoNode;
+    int count = 0;
+    for (const auto& [node, found] : starts_) {
+      if (found.labelled || found.reached || found.targets.empty()) continue;
+      builder_.leave_out(node);
+      count += static_cast<int>(found.targets.size());
+      if (start == kNoNode) start = found.targets.front();
+    }
+    if (start == kNoNode) return;
+    builder_.set_start(start);
+    if (count == 1 || !note_) return;
+    note_(fmt::format("{}: {} starts, of which {} is taken", tokens_.place(), count, in_quotes(builder_.id(start))));
+  }
+
+  // Of a node that may stand for the start.
+  struct Start {
+    std::vector<NodeId> targets;
+    bool labelled = false;
+    bool reached = false;
+  };
 
   DotTokens tokens_;
   std::int64_t most_edges_;
   std::int64_t edges_ = 0;
   bool directed_ = false;
   int depth_ = 0;
-  std::string unit_;
+  std::map<NodeId, Start> starts_;
+  std::function<void(const std::string&)> note_;
   GraphBuilder builder_;
 };
 

@@ -12,7 +12,7 @@ namespace graphdrl {
 bool is_dot(std::string_view text);
 
 // One graph [graphviz.org/doc/info/lang.html], graphs within it, defaults of nodes and edges, and ports. Nodes are
-// numbered as they come. Attributes by their usual names [graph_builder.h]; `pos`, "x,y", is where a node lies. Throws
+// numbered as they come. Attributes by their usual names [attributes.h]; `pos`, "x,y", is where a node lies. Throws
 // Error, naming `source` and the line, on anything else. (Boost.Graph's reader, 1.74, knows no graphs without a name.)
 GraphMap parse_dot(std::string_view text, const std::string& source, const MapOptions& options = {});
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <optional>
 #include <utility>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/entities.h"
 #include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/io/utf8.h"
@@ -18,44 +18,6 @@ namespace {
 
 constexpr int kMostListsDeep = 100;  // lists in each other
 constexpr std::string_view kBlanks = " \t\r\n";
-
-struct Entity {
-  std::string_view name;
-  char character;
-};
-constexpr std::array kEntities = {Entity{"quot", '"'}, Entity{"amp", '&'}, Entity{"lt", '<'}, Entity{"gt", '>'},
-                                  Entity{"apos", '\''}};
-
-// The character that `&name;` stands for; empty where it stands for none.
-std::string character_of(std::string_view name) {
-  if (name.starts_with('#')) {
-    const auto code = parse_number(name.substr(1));
-    return code ? utf8_of(*code) : std::string();
-  }
-  for (const Entity& entity : kEntities) {
-    if (entity.name == name) return {entity.character};
-  }
-  return {};
-}
-
-std::string unescaped(std::string_view text) {
-  constexpr std::size_t kLongest = 10;
-  std::string result;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    if (text[at] == '&') {
-      const std::string_view rest = text.substr(at + 1, kLongest);
-      const std::size_t end = rest.find(';');
-      const std::string character = end == std::string_view::npos ? "" : character_of(rest.substr(0, end));
-      if (!character.empty()) {
-        result += character;
-        at += end + 1;
-        continue;
-      }
-    }
-    result += text[at];
-  }
-  return result;
-}
 
 class GmlReader {
  public:
@@ -76,18 +38,12 @@ class GmlReader {
     for (const LooseEdge& edge : edges_) {
       at_ = edge.at;
       builder_.add_edge(builder_.node(edge.source), builder_.node(edge.target), directed_);
-      for (const Attribute& attribute : edge.attributes) builder_.set_edge(attribute.name, attribute.value);
+      builder_.set_edge(edge.attributes);
     }
-    GraphMap map = builder_.build();
-    map.places.unit = map.places.points.empty() || unit_.empty() ? map.places.unit : unit_;
-    return map;
+    return builder_.build();
   }
 
  private:
-  struct Attribute {
-    std::string name;
-    std::string value;
-  };
   // Edges may stand before their nodes.
   struct LooseEdge {
     std::size_t at;  // in the text
@@ -161,7 +117,7 @@ class GmlReader {
     if (end == std::string_view::npos) fail("a text that does not end", "'\"'", text_.substr(at_, 20));
     const std::string_view found = text_.substr(at_ + 1, end - at_ - 1);
     at_ = end + 1;
-    return unescaped(found);
+    return without_entities(found);
   }
 
   void skip_value() {
@@ -191,7 +147,7 @@ class GmlReader {
       } else if (same_name(*key, "directed")) {
         directed_ = value() == "1";
       } else if (same_name(*key, "unit") && !at_list()) {
-        unit_ = value();
+        builder_.set_unit(value());
       } else {
         skip_value();
       }
@@ -232,7 +188,7 @@ class GmlReader {
   void read_node() {
     std::vector<Attribute> attributes = read_attributes("node");
     const NodeId node = builder_.add_node(take(attributes, "id", "node"));
-    for (const Attribute& attribute : attributes) builder_.set_node(node, attribute.name, attribute.value);
+    builder_.set_node(node, attributes);
   }
 
   void read_edge() {
@@ -248,7 +204,6 @@ class GmlReader {
   int depth_ = 0;
   bool graph_read_ = false;
   bool directed_ = false;
-  std::string unit_;
   std::vector<LooseEdge> edges_;
   GraphBuilder builder_;
 };

@@ -12,7 +12,7 @@ namespace graphdrl {
 bool is_gml(std::string_view text);
 
 // One graph [Himsolt 1997]: graph [ directed 0 node [ id 1 label "a" graphics [ x 0 y 2 ] ] edge [ source 1 target 2
-// weight 3 ] ]. Attributes by their usual names [graph_builder.h]; coordinates may stand in `graphics`; others are
+// weight 3 ] ]. Attributes by their usual names [attributes.h]; coordinates may stand in `graphics`; others are
 // skipped. Throws Error, naming `source` and the line, on anything else.
 GraphMap parse_gml(std::string_view text, const std::string& source, const MapOptions& options = {});
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 #include <unordered_set>
 
@@ -13,69 +13,40 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::array<std::string_view, 4> kCostNames = {"weight", "cost", "length", "distance"};
-constexpr std::array<std::string_view, 2> kPrizeNames = {"prize", "score"};
-constexpr std::array<std::string_view, 2> kLabelNames = {"label", "name"};
-constexpr std::array<std::string_view, 3> kXNames = {"x", "lon", "longitude"};
-constexpr std::array<std::string_view, 3> kYNames = {"y", "lat", "latitude"};
+constexpr std::string_view kBlockedName = "blocked";
 
-constexpr std::size_t kNamesShown = 8;  // of attributes, in an error's message
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-char lower(char c) {
-  return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+// The value of a node in a column that is as long as it must be.
+template <typename Value>
+auto at(std::vector<Value>& column, NodeId node, Value fallback) -> decltype(column[0]) {
+  if (std::ssize(column) <= node) column.resize(static_cast<std::size_t>(node) + 1, fallback);
+  return column[node];
 }
 
-// The place of a name among names; behind the last where it is none of them.
-int rank_of(std::string_view name, std::span<const std::string_view> names) {
-  const auto found =
-      std::find_if(names.begin(), names.end(), [&](std::string_view one) { return same_name(name, one); });
-  return static_cast<int>(found - names.begin());
+template <typename Value>
+void erase_where(std::vector<Value>& column, const std::vector<bool>& left_out) {
+  std::size_t to = 0;
+  for (std::size_t from = 0; from < column.size(); ++from) {
+    if (from < left_out.size() && left_out[from]) continue;
+    if (to != from) column[to] = std::move(column[from]);
+    ++to;
+  }
+  column.resize(to);
 }
 
 }  // namespace
-
-std::span<const std::string_view> cost_names() {
-  return kCostNames;
-}
-
-std::span<const std::string_view> prize_names() {
-  return kPrizeNames;
-}
-
-std::span<const std::string_view> label_names() {
-  return kLabelNames;
-}
-
-std::span<const std::string_view> x_names() {
-  return kXNames;
-}
-
-std::span<const std::string_view> y_names() {
-  return kYNames;
-}
 
 std::int64_t most_nodes_of(std::string_view text) {
   constexpr std::int64_t kWithoutEdges = 1000;
   return std::min<std::int64_t>(std::ssize(text) + kWithoutEdges, std::numeric_limits<NodeId>::max());
 }
 
-std::vector<std::string> labels_if_unique(std::vector<std::string> labels, NodeId count) {
-  std::unordered_set<std::string_view> different;
-  for (const std::string& label : labels) {
-    if (!label.empty()) different.insert(label);
-  }
-  if (std::ssize(different) != count) labels.clear();
-  return labels;
-}
-
-bool same_name(std::string_view one, std::string_view other) {
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
-                    [](char a, char b) { return lower(a) == lower(b); });
-}
-
-bool is_name_of(std::string_view name, std::span<const std::string_view> names) {
-  return rank_of(name, names) < std::ssize(names);
-}
+GraphBuilder::GraphBuilder(const MapOptions& options, std::function<std::string()> place)
+    : costs_(options.cost_attribute, cost_names()),
+      prizes_(options.prize_attribute, prize_names()),
+      note_(options.note),
+      place_(std::move(place)) {}
 
 NodeId GraphBuilder::add_node(std::string_view id) {
   if (!ids_.add(id)) {
@@ -97,118 +68,158 @@ NodeId GraphBuilder::node_or_new(std::string_view id) {
   return ids_.find(id);
 }
 
-void GraphBuilder::add_edge(NodeId from, NodeId to, bool one_way) {
-  links_.push_back({{from, to, 1}, one_way, static_cast<int>(kCostNames.size())});
-  directed_ = directed_ || one_way;
+void GraphBuilder::leave_out(NodeId node) {
+  at(left_out_, node, false) = true;
 }
 
-double GraphBuilder::number(std::string_view name, std::string_view value, bool may_be_negative) const {
-  const std::optional<double> found = parse_number(trimmed(value));
+void GraphBuilder::add_edge(NodeId from, NodeId to, bool one_way) {
+  last_ = one_way ? &one_way_ : &both_ways_;
+  last_->push_back({from, to, 1});
+}
+
+void GraphBuilder::direct_all() {
+  directed_ = true;
+  if (one_way_.empty()) std::swap(one_way_, both_ways_);
+  one_way_.insert(one_way_.end(), both_ways_.begin(), both_ways_.end());
+  both_ways_ = {};
+}
+
+void GraphBuilder::clear_edges() {
+  both_ways_.clear();
+  one_way_.clear();
+}
+
+double GraphBuilder::number(const Attribute& attribute, bool may_be_negative) const {
+  const std::optional<double> found = parse_number(trimmed(attribute.value));
   if (found && (may_be_negative || *found >= 0)) return *found;
-  throw Error({.what = fmt::format("bad {}", escaped(name)),
+  throw Error({.what = fmt::format("bad {}", escaped(attribute.name)),
                .expected = may_be_negative ? "a number" : "a number from 0 up",
-               .got = in_quotes(value),
+               .got = in_quotes(attribute.value),
                .where = place_()});
+}
+
+bool GraphBuilder::uses_of_node(std::string_view name) const {
+  return prizes_.knows(name) || is_name_of(name, label_names()) || is_place_name(name) || same_name(name, kBlockedName);
+}
+
+void GraphBuilder::set_node(NodeId node, std::span<const Attribute> attributes) {
+  if (const Attribute* const prize = prizes_.best(attributes)) {
+    at(prize_, node, 1.0) = number(*prize, /*may_be_negative=*/false);
+  }
+  for (const Attribute& attribute : attributes) {
+    if (const std::size_t rank = rank_of(attribute.name, label_names()); rank < label_names().size()) {
+      std::string& label = at(label_, node, std::string());
+      if (label.empty() || rank == 0) label = attribute.value;
+    } else if (const std::size_t column = place_column(attribute.name); column < kPlaceColumns) {
+      at(places_[column], node, kMissing) = number(attribute, /*may_be_negative=*/true);
+    } else if (same_name(attribute.name, kBlockedName)) {
+      const std::string_view text = trimmed(attribute.value);
+      const bool yes = same_name(text, "true") || text == "1";
+      if (!yes && !same_name(text, "false") && text != "0") {
+        throw Error(
+            {.what = "bad blocked", .expected = "true or false", .got = in_quotes(attribute.value), .where = place_()});
+      }
+      at(blocked_, node, false) = yes;
+    }
+  }
 }
 
 void GraphBuilder::set_node(NodeId node, std::string_view name, std::string_view value) {
-  const bool known = is_name_of(name, kPrizeNames) || is_name_of(name, kLabelNames) || is_name_of(name, kXNames) ||
-                     is_name_of(name, kYNames) || same_name(name, "blocked");
-  if (!known) return;
-  if (std::ssize(nodes_) <= node) nodes_.resize(node + 1);
-  Attributes& attributes = nodes_[node];
-  if (is_name_of(name, kPrizeNames)) {
-    attributes.prize = number(name, value, /*may_be_negative=*/false);
-  } else if (is_name_of(name, kLabelNames)) {
-    if (attributes.label.empty() || same_name(name, kLabelNames.front())) attributes.label = value;
-  } else if (is_name_of(name, kXNames)) {
-    attributes.x = number(name, value, /*may_be_negative=*/true);
-    attributes.degrees = !same_name(name, kXNames.front());
-  } else if (is_name_of(name, kYNames)) {
-    attributes.y = number(name, value, /*may_be_negative=*/true);
-  } else {
-    const std::string_view text = trimmed(value);
-    attributes.blocked = same_name(text, "true") || text == "1";
-    if (!attributes.blocked && !same_name(text, "false") && text != "0") {
-      throw Error({.what = "bad blocked", .expected = "true or false", .got = in_quotes(value), .where = place_()});
-    }
-  }
+  const Attribute attribute{std::string(name), std::string(value)};
+  set_node(node, {&attribute, 1});
+}
+
+void GraphBuilder::set_edge(std::span<const Attribute> attributes) {
+  const Attribute* const cost = costs_.best(attributes);
+  if (cost != nullptr) last_->back().cost = number(*cost, /*may_be_negative=*/false);
 }
 
 void GraphBuilder::set_edge(std::string_view name, std::string_view value) {
-  Link& link = links_.back();
-  if (!cost_attribute_.empty()) {
-    if (same_name(name, cost_attribute_)) {
-      link.edge.cost = number(name, value, /*may_be_negative=*/false);
-      cost_attribute_met_ = true;
-    } else if (edge_attributes_.size() < kNamesShown) {
-      const std::string met(name);
-      if (std::find(edge_attributes_.begin(), edge_attributes_.end(), met) == edge_attributes_.end()) {
-        edge_attributes_.push_back(met);
-      }
-    }
-    return;
-  }
-  const int rank = rank_of(name, kCostNames);
-  if (rank >= link.cost_rank) return;
-  link.edge.cost = number(name, value, /*may_be_negative=*/false);
-  link.cost_rank = rank;
+  const Attribute attribute{std::string(name), std::string(value)};
+  set_edge({&attribute, 1});
 }
 
-void GraphBuilder::check_cost_attribute() const {
-  if (cost_attribute_.empty() || cost_attribute_met_) return;
-  std::string names;
-  for (const std::string& name : edge_attributes_) names += (names.empty() ? "" : ", ") + escaped(name);
-  throw Error({.what = "no edge has this attribute",
-               .expected = names.empty() ? "edges with attributes" : names,
-               .got = in_quotes(cost_attribute_),
-               .where = place_()});
+void GraphBuilder::note(const std::string& text) const {
+  if (note_) note_(fmt::format("{}: {}", place_(), text));
+}
+
+void GraphBuilder::drop_left_out() {
+  if (left_out_.empty()) return;
+  const NodeId count = ids_.count();
+  left_out_.resize(count);
+  std::vector<NodeId> number(count, kNoNode);
+  const std::vector<std::string> labels = ids_.take_labels();  // empty: 0 … count - 1
+  for (NodeId node = 0; node < count; ++node) {
+    if (left_out_[node]) continue;
+    number[node] = node_or_new(labels.empty() ? std::to_string(node) : labels[node]);
+  }
+  for (auto* const edges : {&both_ways_, &one_way_}) {
+    std::erase_if(*edges, [&](const Edge& edge) { return left_out_[edge.a] || left_out_[edge.b]; });
+    for (Edge& edge : *edges) edge = {number[edge.a], number[edge.b], edge.cost};
+  }
+  if (start_ != kNoNode) start_ = number[start_];
+  erase_where(blocked_, left_out_);
+  erase_where(prize_, left_out_);
+  erase_where(label_, left_out_);
+  for (auto& column : places_) erase_where(column, left_out_);
 }
 
 std::vector<std::string> GraphBuilder::take_labels() {
-  std::vector<std::string> labels;
-  for (Attributes& node : nodes_) labels.push_back(std::move(node.label));
-  labels = labels_if_unique(std::move(labels), ids_.count());
-  return labels.empty() ? ids_.take_labels() : labels;
+  std::unordered_set<std::string_view> different;
+  for (const std::string& label : label_) {
+    if (!label.empty()) different.insert(label);
+  }
+  if (std::ssize(different) == ids_.count()) return std::move(label_);
+  if (!different.empty()) {
+    note(fmt::format("the {} nodes have {} different labels, so ids name them", ids_.count(), different.size()));
+  }
+  return ids_.take_labels();
 }
 
-void GraphBuilder::take_places(GraphMap& map) const {
-  const auto has_place = [](const Attributes& node) { return node.x && node.y; };
-  const auto placed = std::count_if(nodes_.begin(), nodes_.end(), has_place);
-  if (placed < std::ssize(nodes_)) {
-    if (placed > 0 && note_) {
-      note_(fmt::format("{}: only {} of {} nodes have coordinates, so none are used", place_(), placed, nodes_.size()));
+Places GraphBuilder::take_places() {
+  NodeId most = 0;
+  for (std::size_t kind = 0; kind < place_names().size(); ++kind) {
+    const std::vector<double>& x = places_[2 * kind];
+    const std::vector<double>& y = places_[2 * kind + 1];
+    Places places{.points = {}, .unit = unit_.empty() ? std::string(place_names()[kind].unit) : unit_};
+    for (std::size_t node = 0; node < std::min(x.size(), y.size()); ++node) {
+      if (!std::isnan(x[node]) && !std::isnan(y[node])) places.points.push_back({x[node], y[node]});
     }
-    return;
+    const auto placed = static_cast<NodeId>(places.points.size());
+    if (placed == ids_.count()) return places;
+    most = std::max(most, placed);
   }
-  for (const Attributes& node : nodes_) map.places.points.push_back({*node.x, *node.y});
-  if (!nodes_.empty() && nodes_.front().degrees) map.places.unit = "degrees";
+  if (most > 0) note(fmt::format("only {} of {} nodes have coordinates, so none are used", most, ids_.count()));
+  return {};
 }
 
 GraphMap GraphBuilder::build() {
-  check_cost_attribute();
+  costs_.check("edge", place_());
+  prizes_.check("node", place_());
+  drop_left_out();
   const NodeId count = ids_.count();
-  nodes_.resize(count);
-  std::vector<Edge> edges;
-  edges.reserve(links_.size());
-  for (const Link& link : links_) {
-    edges.push_back(link.edge);
-    if (directed_ && !link.one_way) edges.push_back({link.edge.b, link.edge.a, link.edge.cost});
-  }
-  GraphMap map;
-  map.graph = Graph::from_edges(count, edges, directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
-  bool prizes = false;
-  for (const Attributes& node : nodes_) {
-    map.blocked.push_back(node.blocked);
-    prizes = prizes || node.prize != 1;
-  }
-  for (const Attributes& node : nodes_) {
-    if (prizes) map.prizes.push_back(node.prize);
-  }
-  if (std::find(map.blocked.begin(), map.blocked.end(), false) == map.blocked.end()) {
+  blocked_.resize(count);
+  if (std::find(blocked_.begin(), blocked_.end(), false) == blocked_.end()) {
     throw Error({.what = "the graph has no free node", .where = place_()});
   }
-  take_places(map);
+  for (const AmountNames* const names : {&costs_, &prizes_}) {
+    const std::string mixed = names->mixed();
+    if (!mixed.empty()) note(fmt::format("{} come from {}", names == &costs_ ? "costs" : "prizes", mixed));
+  }
+  directed_ = directed_ || !one_way_.empty();
+  if (directed_) {
+    for (const Edge& edge : both_ways_) one_way_.insert(one_way_.end(), {edge, {edge.b, edge.a, edge.cost}});
+  }
+  GraphMap map;
+  map.graph = Graph::from_edges(count, directed_ ? one_way_ : both_ways_,
+                                directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  map.blocked = std::move(blocked_);
+  if (std::any_of(prize_.begin(), prize_.end(), [](double prize) { return prize != 1; })) {
+    prize_.resize(count, 1.0);
+    map.prizes = std::move(prize_);
+  }
+  map.places = take_places();
+  map.task.start = start_;
   map.labels = take_labels();
   return map;
 }

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <pugixml.hpp>
 #include <sstream>
-#include <unordered_map>
+#include <unordered_set>
 
-#include "graphdrl/base/error.h"
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/text.h"
+#include "graphdrl/io/utf8.h"
+#include "graphdrl/io/xml.h"
 
 namespace graphdrl {
 namespace {
@@ -16,106 +17,111 @@ namespace {
 class GraphMlReader {
  public:
   GraphMlReader(std::string_view text, const std::string& source, const MapOptions& options)
-      : text_(text), source_(source), builder_(options, [this] { return place(); }) {}
+      : file_(text, source), note_(options.note), builder_(options, [this] { return file_.place(at_); }) {}
 
   GraphMap read() {
-    pugi::xml_document document;
-    const pugi::xml_parse_result result = document.load_buffer(text_.data(), text_.size());
-    if (!result) {
-      throw Error({.what = fmt::format("XML that is not well formed ({})", result.description()),
-                   .where = fmt::format("{}:{}", source_, line_of(result.offset))});
-    }
-    const pugi::xml_node root = document.child("graphml");
+    const pugi::xml_node root = file_.root("graphml");
     const pugi::xml_node graph = root.child("graph");
-    if (!graph) throw Error({.what = "no graph", .expected = "an element `graph`", .where = source_});
-    at_ = graph.next_sibling("graph");
-    if (at_) fail("a second graph", "one graph");
+    if (!graph) file_.fail(root, "no graph", "an element `graph`");
+    if (const pugi::xml_node second = graph.next_sibling("graph")) file_.fail(second, "a second graph", "one graph");
     read_keys(root);
-    directed_ = std::string_view(graph.attribute("edgedefault").value()) == "directed";
-    for (const pugi::xml_node node : graph.children("node")) read_node(node);
-    for (const pugi::xml_node edge : graph.children("edge")) read_edge(edge);
-    at_ = graph.child("hyperedge");
-    if (at_) fail("an edge between more than two nodes", "edges between two nodes");
-    at_ = graph;
-    GraphMap map = builder_.build();
-    for (const pugi::xml_node data : graph.children("data")) {
-      const auto key = graph_keys_.find(data.attribute("key").value());
-      if (key != graph_keys_.end() && key->second.name == "unit") map.places.unit = data.text().get();
+    graphs_ = {graph};
+    for (std::size_t i = 0; i < graphs_.size(); ++i) {  // grows by the graphs within nodes
+      const pugi::xml_node one = graphs_[i];
+      for (const pugi::xml_node node : one.children("node")) read_node(node);
     }
-    return map;
+    for (const pugi::xml_node one : graphs_) {
+      const bool directed = std::string_view(one.attribute("edgedefault").value()) == "directed";
+      for (const pugi::xml_node edge : one.children("edge")) read_edge(edge, directed);
+      if (const pugi::xml_node hyper = one.child("hyperedge")) {
+        file_.fail(hyper, "an edge between more than two nodes", "edges between two nodes");
+      }
+    }
+    at_ = graph;
+    leave_out_groups();
+    for (const Attribute& attribute : data_of(graph_keys_, graph)) {
+      if (attribute.name == "unit") builder_.set_unit(attribute.value);
+    }
+    return builder_.build();
   }
 
  private:
-  struct Key {
-    std::string name;
-    std::string fallback;  // the value where none is given; empty where there is none
-    bool has_fallback = false;
-  };
-  using Keys = std::unordered_map<std::string, Key>;
-
-  std::ptrdiff_t line_of(std::ptrdiff_t offset) const {
-    offset = std::clamp<std::ptrdiff_t>(offset, 0, std::ssize(text_));
-    return 1 + std::count(text_.begin(), text_.begin() + offset, '\n');
-  }
-  std::string place() const { return fmt::format("{}:{}", source_, line_of(at_.offset_debug())); }
-  [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
-    throw Error({.what = what, .expected = expected, .where = place()});
-  }
-
   void read_keys(const pugi::xml_node& root) {
     for (const pugi::xml_node key : root.children("key")) {
       const std::string_view kind = key.attribute("for").value();
-      const pugi::xml_node fallback = key.child("default");
-      const Key found{.name = key.attribute("attr.name").value(),
-                      .fallback = fallback.text().get(),
-                      .has_fallback = static_cast<bool>(fallback)};
-      const std::string id = key.attribute("id").value();
       const bool all = kind.empty() || kind == "all";
-      if (all || kind == "node") node_keys_[id] = found;
-      if (all || kind == "edge") edge_keys_[id] = found;
-      if (all || kind == "graph") graph_keys_[id] = found;
+      if (all || kind == "node") node_keys_.add(key, "attr.name");
+      if (all || kind == "edge") edge_keys_.add(key, "attr.name");
+      if (all || kind == "graph") graph_keys_.add(key, "attr.name");
     }
   }
 
-  // Calls set(name, value) for what is given, and for the defaults before.
-  template <typename Set>
-  static void read_data(const Keys& keys, const pugi::xml_node& item, const Set& set) {
-    for (const auto& [id, key] : keys) {
-      if (key.has_fallback) set(key.name, key.fallback);
-    }
+  // The defaults, and after them what is given.
+  static std::vector<Attribute> data_of(const XmlKeys& keys, const pugi::xml_node& item) {
+    std::vector<Attribute> attributes = keys.defaults();
     for (const pugi::xml_node data : item.children("data")) {
-      const auto key = keys.find(data.attribute("key").value());
-      if (key != keys.end()) set(key->second.name, data.text().get());
+      keys.append(data.attribute("key").value(), data.text().get(), attributes);
+    }
+    return attributes;
+  }
+
+  // What yEd draws of a node: its text and the upper left corner of its shape.
+  static void append_drawing(const pugi::xml_node& item, std::vector<Attribute>& attributes) {
+    for (const pugi::xml_node data : item.children("data")) {
+      const auto find = [&](std::string_view name) {
+        return data.find_node([&](pugi::xml_node one) { return local_name(one) == name; });
+      };
+      const pugi::xml_node label = find("NodeLabel");
+      if (label) attributes.push_back({"label", std::string(trimmed(label.child_value(), " \t\n"))});
+      const pugi::xml_node geometry = find("Geometry");
+      for (const char* const axis : {"x", "y"}) {
+        if (geometry.attribute(axis)) attributes.push_back({axis, geometry.attribute(axis).value()});
+      }
     }
   }
 
   void read_node(const pugi::xml_node& item) {
     at_ = item;
     const pugi::xml_attribute id = item.attribute("id");
-    if (!id) fail("a node without an id", "an attribute `id`");
-    if (item.child("graph")) fail("a graph within a node", "one flat graph");
+    if (!id) file_.fail(item, "a node without an id", "an attribute `id`");
     const NodeId node = builder_.add_node(id.value());
-    read_data(node_keys_, item,
-              [&](const std::string& name, std::string_view value) { builder_.set_node(node, name, value); });
+    if (const pugi::xml_node inner = item.child("graph")) {
+      graphs_.push_back(inner);
+      groups_.insert(node);
+    }
+    std::vector<Attribute> attributes;
+    append_drawing(item, attributes);
+    const std::vector<Attribute> data = data_of(node_keys_, item);
+    attributes.insert(attributes.end(), data.begin(), data.end());
+    builder_.set_node(node, attributes);
   }
 
-  void read_edge(const pugi::xml_node& item) {
+  void read_edge(const pugi::xml_node& item, bool directed) {
     at_ = item;
     const NodeId from = builder_.node(item.attribute("source").value());
     const NodeId to = builder_.node(item.attribute("target").value());
     const std::string_view one_way = item.attribute("directed").value();
-    builder_.add_edge(from, to, one_way.empty() ? directed_ : one_way == "true");
-    read_data(edge_keys_, item,
-              [&](const std::string& name, std::string_view value) { builder_.set_edge(name, value); });
+    builder_.add_edge(from, to, one_way.empty() ? directed : one_way == "true");
+    builder_.set_edge(data_of(edge_keys_, item));
+    groups_.erase(from);
+    groups_.erase(to);
   }
 
-  std::string_view text_;
-  const std::string& source_;
+  // A group that no edge leads to is a frame around its nodes.
+  void leave_out_groups() {
+    for (const NodeId group : groups_) builder_.leave_out(group);
+    if (groups_.empty() || !note_) return;
+    note_(fmt::format("{}: groups without edges of their own are left out: {}", file_.place(at_), groups_.size()));
+  }
+
+  const XmlFile file_;
+  std::function<void(const std::string&)> note_;
   pugi::xml_node at_;  // what is read, for errors
-  Keys node_keys_;
-  Keys edge_keys_;
-  Keys graph_keys_;
-  bool directed_ = false;
+  std::vector<pugi::xml_node> graphs_;
+  std::unordered_set<NodeId> groups_;  // that no edge has led to so far
+  XmlKeys node_keys_;
+  XmlKeys edge_keys_;
+  XmlKeys graph_keys_;
   GraphBuilder builder_;
 };
 
@@ -130,16 +136,13 @@ void append_key(pugi::xml_node root, const char* id, const char* kind, const cha
 void append_data(pugi::xml_node item, const char* key, const std::string& value) {
   pugi::xml_node data = item.append_child("data");
   data.append_attribute("key") = key;
-  data.text() = value.c_str();
+  data.text() = xml_text(value).c_str();
 }
 
 }  // namespace
 
 bool is_graphml(std::string_view text) {
-  constexpr std::size_t kLooked = 4096;  // comments may stand before it
-  const std::size_t begin = text.find_first_not_of(" \t\r\n");
-  if (begin == std::string_view::npos || text[begin] != '<') return false;
-  return text.substr(0, kLooked).find("<graphml") != std::string_view::npos;
+  return is_xml_with(text, "<graphml");
 }
 
 GraphMap parse_graphml(std::string_view text, const std::string& source, const MapOptions& options) {
@@ -171,7 +174,8 @@ std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
   pugi::xml_node graph = root.append_child("graph");
   graph.append_attribute("edgedefault") = map.graph.directed() ? "directed" : "undirected";
   if (!map.places.unit.empty()) append_data(graph, "unit", map.places.unit);
-  const auto id_of = [&](NodeId node) { return map.labels.empty() ? std::to_string(node) : map.labels[node]; };
+  const std::vector<std::string> labels = fitted_labels(map.labels, xml_text);
+  const auto id_of = [&](NodeId node) { return labels.empty() ? std::to_string(node) : labels[node]; };
   for (NodeId node = 0; node < map.graph.node_count(); ++node) {
     pugi::xml_node item = graph.append_child("node");
     item.append_attribute("id") = id_of(node).c_str();

@@ -12,11 +12,11 @@ namespace graphdrl {
 bool is_graphml(std::string_view text);
 
 // One graph [Brandes et al. 2002, graphml.graphdrawing.org], directed where it or one of its edges says so; an edge
-// that does not lead one way leads both ways then. Attributes by their names (`attr.name`), defaults too: `weight`,
-// `cost`, `length` or `distance` of edges, 1 unless given; `prize` or `score`, `blocked`, `x` and `y` or `lon` and
-// `lat`, and `label` or `name` of nodes; others are skipped. Throws Error, naming `source` and mostly the line, on XML
-// that is not well formed, on no graph or several, on graphs within nodes, on edges between more than two nodes, on an
-// id used twice, and on values out of range.
+// that does not lead one way leads both ways then. Attributes by their usual names (`attr.name`) [attributes.h],
+// defaults too; yEd's texts and coordinates of nodes. Graphs within nodes, yEd's groups, are part of the graph; a node
+// with a graph that no edge leads to is left out. Throws Error, naming `source` and mostly the line, on XML that is not
+// well formed, on no graph or several, on edges between more than two nodes, on an id used twice, and on values out of
+// range.
 GraphMap parse_graphml(std::string_view text, const std::string& source, const MapOptions& options = {});
 
 // Ends with a line break. Keeps all but the task.

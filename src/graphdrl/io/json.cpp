@@ -87,6 +87,14 @@ Error json_error(const std::exception& complaint, std::size_t position, std::str
   if (dynamic_cast<const json::out_of_range*>(&complaint) != nullptr) {
     return Error({.what = "a number too large", .where = source});
   }
+  for (const std::string_view word : {"NaN", "Infinity"}) {  // Python's json writes these
+    if (position > 0 && text.substr(position - 1).starts_with(word)) {
+      return Error({.what = "not JSON",
+                    .expected = "a number or null",
+                    .got = in_quotes(word),
+                    .where = line_of(text, position, source)});
+    }
+  }
   return Error({.what = "not JSON", .expected = expected, .where = line_of(text, position, source)});
 }
 

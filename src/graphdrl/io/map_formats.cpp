@@ -12,7 +12,9 @@
 #include "graphdrl/io/dimacs.h"
 #include "graphdrl/io/dot.h"
 #include "graphdrl/io/edge_list.h"
+#include "graphdrl/io/gexf.h"
 #include "graphdrl/io/gml.h"
+#include "graphdrl/io/graph_walker.h"
 #include "graphdrl/io/graphml.h"
 #include "graphdrl/io/moving_ai.h"
 #include "graphdrl/io/numpy_map.h"
@@ -43,20 +45,35 @@ AnyMap read(std::string_view text, const std::string& source, const MapOptions& 
 }
 
 constexpr std::array kFormats = {
+    MapFormat{.name = "graph-walker",
+              .ending = ".json",
+              .purpose = "GraphWalker's models, from which tests are made",
+              .recognise = is_graph_walker,
+              .read = read<parse_graph_walker>,
+              .takes_cost_attribute = true},
     MapFormat{.name = "node-link",
               .ending = ".json",
               .purpose = "any graph as JSON, as networkx and D3 write it",
               .recognise = is_node_link,
               .read = read<parse_node_link>,
               .write_graph = format_node_link,
-              .takes_cost_attribute = true},
+              .takes_cost_attribute = true,
+              .takes_prize_attribute = true},
     MapFormat{.name = "graphml",
               .ending = ".graphml",
               .purpose = "any graph as XML, as networkx, igraph, Gephi and yEd write it",
               .recognise = is_graphml,
               .read = read<parse_graphml>,
               .write_graph = format_graphml,
-              .takes_cost_attribute = true},
+              .takes_cost_attribute = true,
+              .takes_prize_attribute = true},
+    MapFormat{.name = "gexf",
+              .ending = ".gexf",
+              .purpose = "any graph as Gephi writes it",
+              .recognise = is_gexf,
+              .read = read<parse_gexf>,
+              .takes_cost_attribute = true,
+              .takes_prize_attribute = true},
     MapFormat{.name = "png",
               .ending = ".png",
               .purpose = "a grid as a picture: a pixel is a cell, blocked where dark",
@@ -94,14 +111,16 @@ constexpr std::array kFormats = {
               .recognise = is_dot,
               .read = read<parse_dot>,
               .write_graph = format_dot,
-              .takes_cost_attribute = true},
+              .takes_cost_attribute = true,
+              .takes_prize_attribute = true},
     MapFormat{.name = "gml",
               .ending = ".gml",
               .purpose = "any graph, as networkx, igraph, Gephi and yEd write it",
               .recognise = is_gml,
               .read = read<parse_gml>,
               .write_graph = format_gml,
-              .takes_cost_attribute = true},
+              .takes_cost_attribute = true,
+              .takes_prize_attribute = true},
     MapFormat{.name = "pajek",
               .ending = ".net",
               .purpose = "graphs of Pajek, as networkx and igraph write them",

@@ -25,6 +25,7 @@ struct MapFormat {
   std::string (*write_graph)(const GraphMap& map) = nullptr;  // null where it does not hold all of a graph
   // Which options have a meaning here.
   bool takes_cost_attribute = false;
+  bool takes_prize_attribute = false;
   bool takes_cell_pixels = false;
   bool takes_unknown = false;
 };

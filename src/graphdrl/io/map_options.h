@@ -4,11 +4,16 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace graphdrl {
 
+// As an attribute's name: every edge costs 1, every first visit is worth 1.
+inline constexpr std::string_view kNoAttribute = "none";
+
 struct MapOptions {
-  std::string cost_attribute = {};  // the edges' attribute that is their cost; empty: the first of cost_names()
+  std::string cost_attribute = {};   // the edges' attribute that is their cost; empty: the first of cost_names()
+  std::string prize_attribute = {};  // the nodes' attribute that is their prize; empty: the first of prize_names()
 
   // Of grids.
   int cell_pixels = 1;                   // of pictures: pixels a side of a cell

@@ -10,12 +10,12 @@
 #include "graphdrl/graph/grid_transforms.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/map_text.h"
 
 namespace graphdrl {
 namespace {
 
 constexpr std::string_view kPaperLetters = "abcdefghij";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets begin UTF-8 with it
 
 void refuse_option(const char* option, const std::string& what, const std::string& source) {
   throw Error({.what = fmt::format("{} goes with {}", option, what), .where = source});
@@ -67,18 +67,20 @@ void check_options(const MapFormat& format, const MapOptions& options, const std
   if (!options.cost_attribute.empty() && !format.takes_cost_attribute) {
     refuse_option("--cost-attribute", "graphs whose edges have attributes", source);
   }
+  if (!options.prize_attribute.empty() && !format.takes_prize_attribute) {
+    refuse_option("--prize-attribute", "graphs whose nodes have attributes", source);
+  }
   if (options.cell_pixels != 1 && !format.takes_cell_pixels) refuse_option("--cell-pixels", "pictures", source);
   if (options.unknown_is_free && !format.takes_unknown) refuse_option("--unknown", "ROS maps", source);
 }
 
 NamedMap file_map(const std::filesystem::path& path, const MapOptions& options) {
-  const std::string content = read_file(path);
-  std::string_view text = content;
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  const MapFormat& format = format_of(text);
   const std::string source = path.string();
+  const std::string text = map_text(read_file(path), source, options.note);
+  const MapFormat& format = format_of(text);
   check_options(format, options, source);
-  NamedMap named{path.stem().string(), format.read(text, source, options)};
+  const std::filesystem::path name = path.extension() == ".gz" ? path.stem() : path;
+  NamedMap named{name.stem().string(), format.read(text, source, options)};
   shape_map(named.map, options, source);
   return named;
 }

@@ -25,6 +25,7 @@ class NodeIds {
   NodeId find(std::uint64_t id) const;
 
   NodeId count() const { return count_; }
+  std::string text(NodeId node) const { return plain() ? std::to_string(node) : (*labels_)[node]; }
 
   // Every id; empty where they are 0 … N - 1. Nothing is left.
   std::vector<std::string> take_labels();

@@ -32,9 +32,8 @@ struct NodeColumn {
 // {"directed": false, "nodes": [{"id": "a", "blocked": true, "prize": 3}, …], "links": [{"source": "a", "target": "b",
 // "weight": 2}, …]}
 //
-// Nodes are numbered as they stand. Ids are whole numbers or texts; `blocked` is false, `prize` and `weight`, by any of
-// their names [graph_builder.h], are 1 unless given, and at least 0; coordinates are kept where every node has them, a
-// `label` or `name` where all are different texts; {"graph": {"unit": "m"}} is the coordinates' unit; `links` may be
+// Nodes are numbered as they stand. Ids are whole numbers, texts or lists of them, which become texts like "(0, 1)".
+// Attributes by their usual names [attributes.h]; {"graph": {"unit": "m"}} is the coordinates' unit; `links` may be
 // called `edges`; keys may stand in any order, others are skipped. Throws Error, naming `source` and the place, on
 // anything else, on an id used twice and on a graph without a free node. Cost: linear, without a copy of the document;
 // the text is read twice where links stand before nodes.

@@ -9,10 +9,10 @@ namespace graphdrl {
 // A number that a text is, whole: "1", "-2.5e3", "+4". Empty where it is none, or not finite. -0 is 0.
 std::optional<double> parse_number(std::string_view text);
 
-// Without the spaces and tabs at both ends.
-std::string_view trimmed(std::string_view text);
+// Without the spaces and tabs, or other blanks, at both ends.
+std::string_view trimmed(std::string_view text, std::string_view blanks = " \t");
 
-// The lines of a text, one by one, without their ends "\n" or "\r\n".
+// The lines of a text, one by one, without their ends: "\n", "\r\n" or "\r".
 class Lines {
  public:
   explicit Lines(std::string_view text) : rest_(text) {}

@@ -1,15 +1,13 @@
 #include "graphdrl/io/utf8.h"
 
 #include <boost/locale/utf.hpp>
-#include <cmath>
 #include <iterator>
+#include <unordered_set>
 
 namespace graphdrl {
 namespace {
 
 using Traits = boost::locale::utf::utf_traits<char>;
-
-constexpr std::uint32_t kReplacement = 0xFFFD;
 
 }  // namespace
 
@@ -21,12 +19,20 @@ Utf8Character utf8_at(std::string_view text, std::size_t at) {
   return {code, static_cast<std::size_t>(next - begin)};
 }
 
-std::string utf8_of(double code) {
+std::string utf8_of(std::uint32_t code) {
   std::string text;
-  if (!(code >= 1 && code <= 0x10FFFF) || code != std::floor(code)) return text;
-  const auto number = static_cast<boost::locale::utf::code_point>(code);
-  if (boost::locale::utf::is_valid_codepoint(number)) Traits::encode(number, std::back_inserter(text));
+  if (code == 0) return text;
+  if (boost::locale::utf::is_valid_codepoint(code)) Traits::encode(code, std::back_inserter(text));
   return text;
+}
+
+bool is_utf8(std::string_view text) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at != end) {
+    if (!boost::locale::utf::is_valid_codepoint(Traits::decode(at, end))) return false;
+  }
+  return true;
 }
 
 std::string valid_utf8(std::string_view text) {
@@ -38,6 +44,14 @@ std::string valid_utf8(std::string_view text) {
     at += character.bytes;
   }
   return result;
+}
+
+std::vector<std::string> fitted_labels(std::span<const std::string> labels, std::string (*fit)(std::string_view)) {
+  std::vector<std::string> fitted;
+  for (const std::string& label : labels) fitted.push_back(fit(label));
+  const std::unordered_set<std::string_view> different(fitted.begin(), fitted.end());
+  if (different.size() != fitted.size()) fitted.clear();
+  return fitted;
 }
 
 }  // namespace graphdrl
