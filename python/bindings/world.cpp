@@ -40,20 +40,20 @@ World graph(std::string name, std::int64_t node_count, const InArray<std::int64_
             std::vector<std::string> labels, const InArray<double, nb::ndim<1>>& prizes,
             const InArray<double, nb::shape<-1, 2>>& places, const std::string& unit, const GivenState& given) {
   const auto& [budget, start, end] = given;
-  GraphArrays arrays{.name = std::move(name),
-                     .node_count = node_count,
-                     .edges = {edges.data(), edges.size()},
-                     .costs = {costs.data(), costs.size()},
-                     .directed = directed,
-                     .blocked = std::vector<bool>(blocked.data(), blocked.data() + blocked.size()),
-                     .labels = std::move(labels),
-                     .prizes = {prizes.data(), prizes.data() + prizes.size()},
-                     .places = {.points = {}, .unit = unit},
-                     .given = {.budget = budget, .start = start, .end = end}};
+  const EdgeArrays arrays{.node_count = node_count,
+                          .edges = {edges.data(), edges.size()},
+                          .costs = {costs.data(), costs.size()},
+                          .directed = directed};
+  GraphMap map{.graph = {},
+               .blocked = std::vector<bool>(blocked.data(), blocked.data() + blocked.size()),
+               .labels = std::move(labels),
+               .prizes = {prizes.data(), prizes.data() + prizes.size()},
+               .places = {.points = {}, .unit = unit},
+               .task = {.budget = budget, .start = start, .end = end}};
   for (std::size_t i = 0; i < places.size() / 2; ++i) {
-    arrays.places.points.push_back({places.data()[2 * i], places.data()[2 * i + 1]});
+    map.places.points.push_back({places.data()[2 * i], places.data()[2 * i + 1]});
   }
-  return world_of(std::move(arrays));
+  return world_of(std::move(name), arrays, std::move(map));
 }
 
 World from_file(const std::string& path, const std::string& cost_attribute, const std::string& prize_attribute,

@@ -138,14 +138,14 @@ graphdrl_status graphdrl_world_from_edges(const char* name, int32_t node_count, 
     if (edge_count > 0) require(edges, "the array of edges");
     const std::size_t nodes = node_count > 0 ? static_cast<std::size_t>(node_count) : 0;
     const std::vector<std::int64_t> ends(edges, edges + 2 * edge_count);
-    GraphArrays arrays{.name = name != nullptr ? name : "graph",
-                       .node_count = node_count,
-                       .edges = ends,
-                       .costs = {costs, costs != nullptr ? edge_count : 0},
-                       .directed = directed != 0};
-    if (blocked != nullptr) arrays.blocked.assign(blocked, blocked + nodes);
-    if (prizes != nullptr) arrays.prizes.assign(prizes, prizes + nodes);
-    *world = new graphdrl_world(world_of(std::move(arrays)));
+    const EdgeArrays arrays{.node_count = node_count,
+                            .edges = ends,
+                            .costs = {costs, costs != nullptr ? edge_count : 0},
+                            .directed = directed != 0};
+    GraphMap map;
+    if (blocked != nullptr) map.blocked.assign(blocked, blocked + nodes);
+    if (prizes != nullptr) map.prizes.assign(prizes, prizes + nodes);
+    *world = new graphdrl_world(world_of(name != nullptr ? name : "graph", arrays, std::move(map)));
   });
 }
 

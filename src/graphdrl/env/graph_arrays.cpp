@@ -21,7 +21,7 @@ void require_length(std::size_t length, std::size_t expected, const char* what) 
 
 }  // namespace
 
-World world_of(GraphArrays arrays) {
+World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
   if (arrays.node_count < 1 || arrays.node_count > kMostNodes) {
     throw Error({.what = "bad number of nodes",
                  .expected = fmt::format("1 to {}", kMostNodes),
@@ -29,10 +29,10 @@ World world_of(GraphArrays arrays) {
   }
   const auto n = static_cast<std::size_t>(arrays.node_count);
   require_length(arrays.costs.size(), arrays.edges.size() / 2, "costs");
-  require_length(arrays.blocked.size(), n, "blocked");
-  require_length(arrays.labels.size(), n, "labels");
-  require_length(arrays.prizes.size(), n, "prizes");
-  require_length(arrays.places.points.size(), n, "places");
+  require_length(map.blocked.size(), n, "blocked");
+  require_length(map.labels.size(), n, "labels");
+  require_length(map.prizes.size(), n, "prizes");
+  require_length(map.places.points.size(), n, "places");
   std::vector<Edge> edges;
   edges.reserve(arrays.edges.size() / 2);
   for (std::size_t i = 0; i < arrays.edges.size() / 2; ++i) {
@@ -45,20 +45,22 @@ World world_of(GraphArrays arrays) {
     }
     edges.push_back({static_cast<NodeId>(a), static_cast<NodeId>(b), arrays.costs.empty() ? 1.0 : arrays.costs[i]});
   }
-  for (const double prize : arrays.prizes) {
+  for (const double prize : map.prizes) {
     if (!std::isfinite(prize) || prize < 0) {
       throw Error({.what = "bad prize", .expected = "a number from 0 up", .got = fmt::format("{}", prize)});
     }
   }
-  for (std::size_t i = 0; i < arrays.places.points.size(); ++i) {
-    if (std::isfinite(arrays.places.points[i].x) && std::isfinite(arrays.places.points[i].y)) continue;
+  for (std::size_t i = 0; i < map.places.points.size(); ++i) {
+    if (std::isfinite(map.places.points[i].x) && std::isfinite(map.places.points[i].y)) continue;
     throw Error({.what = fmt::format("bad coordinates of node {}", i), .expected = "finite numbers"});
   }
-  if (arrays.blocked.empty()) arrays.blocked.resize(n);
-  Graph graph = Graph::from_edges(static_cast<NodeId>(arrays.node_count), edges,
-                                  arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
-  return World(std::move(arrays.name), std::move(graph), std::move(arrays.blocked), std::move(arrays.labels),
-               std::move(arrays.prizes), arrays.given, std::move(arrays.places));
+  if (map.blocked.empty()) map.blocked.resize(n);
+  map.graph = Graph::from_edges(static_cast<NodeId>(arrays.node_count), edges,
+                                arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  if (std::ssize(edges) > map.graph.edge_count()) {
+    map.multigraph = std::make_shared<const Multigraph>(Multigraph{.edges = std::move(edges)});
+  }
+  return World(std::move(name), std::move(map));
 }
 
 }  // namespace graphdrl

@@ -1,6 +1,7 @@
 #include "graphdrl/env/known.h"
 
 #include <atomic>
+#include <cmath>
 
 #include "graphdrl/base/error.h"
 
@@ -30,6 +31,9 @@ std::shared_ptr<const Known> make_known(Known&& known) {
     if (made->blocked[node]) continue;
     made->valid_nodes.push_back(node);
     made->total_prize += made->prizes.empty() ? 1 : made->prizes[node];
+  }
+  if (!std::isfinite(made->total_prize)) {
+    throw Error({.what = "the prizes add up to more than a number holds", .where = made->name});
   }
   if (made->valid_nodes.empty()) throw Error({.what = "the world has no valid node", .where = made->name});
   if (made->open.directed()) {

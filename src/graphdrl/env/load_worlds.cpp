@@ -20,9 +20,7 @@ int parse_index(std::string_view text) {
 
 World make_world(NamedMap&& named) {
   if (auto* const grid = std::get_if<GridMap>(&named.map)) return World(std::move(named.name), std::move(*grid));
-  auto& map = std::get<GraphMap>(named.map);
-  return World(std::move(named.name), std::move(map.graph), std::move(map.blocked), std::move(map.labels),
-               std::move(map.prizes), map.task, std::move(map.places));
+  return World(std::move(named.name), std::get<GraphMap>(std::move(named.map)));
 }
 
 // kNoNode where the text names no node.

@@ -11,24 +11,47 @@ World::World(std::string name, GridMap map) {
   data_ = std::make_shared<const Data>(Data{.known = made, .view = made});
 }
 
-World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels,
-             std::vector<double> prizes, GivenTask given, Places places) {
-  Known known{.name = std::move(name), .open = {}, .blocked = std::move(blocked), .prizes = std::move(prizes)};
+World::World(std::string name, GraphMap map) {
+  Known known{.name = std::move(name), .open = {}, .blocked = std::move(map.blocked), .prizes = std::move(map.prizes)};
   const bool any_blocked = std::find(known.blocked.begin(), known.blocked.end(), true) != known.blocked.end();
   std::optional<Graph> whole;
   if (any_blocked) {
-    known.open = graph.without(known.blocked);
-    whole = std::move(graph);
+    known.open = map.graph.without(known.blocked);
+    whole = std::move(map.graph);
   } else {
-    known.open = std::move(graph);
+    known.open = std::move(map.graph);
   }
   const auto made = make_known(std::move(known));
   data_ = std::make_shared<const Data>(Data{.known = made,
                                             .view = made,
                                             .graph = std::move(whole),
-                                            .labels = std::move(labels),
-                                            .given = given,
-                                            .places = std::move(places)});
+                                            .labels = std::move(map.labels),
+                                            .given = map.task,
+                                            .places = std::move(map.places),
+                                            .multigraph = std::move(map.multigraph)});
+}
+
+World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels,
+             std::vector<double> prizes, GivenTask given, Places places)
+    : World(std::move(name), GraphMap{.graph = std::move(graph),
+                                      .blocked = std::move(blocked),
+                                      .labels = std::move(labels),
+                                      .prizes = std::move(prizes),
+                                      .places = std::move(places),
+                                      .task = given}) {}
+
+GraphMap World::to_map() const {
+  GraphMap map{.graph = graph(),
+               .blocked = blocked(),
+               .labels = labels(),
+               .prizes = prizes(),
+               .places = data_->places,
+               .task = given(),
+               .multigraph = data_->multigraph};
+  if (!has_cells() || !this->map()->frame) return map;
+  map.places.unit = unit();
+  for (NodeId node = 0; node < node_count(); ++node) map.places.points.push_back(place(node));
+  return map;
 }
 
 Point World::place(NodeId node) const {

@@ -12,6 +12,7 @@
 #include "graphdrl/graph/given_task.h"
 #include "graphdrl/graph/graph.h"
 #include "graphdrl/graph/grid_map.h"
+#include "graphdrl/io/node_link.h"
 
 namespace graphdrl {
 
@@ -22,11 +23,15 @@ class World {
   // A grid: has cells, and directions where it has no diagonals. Throws Error where every cell is blocked.
   World(std::string name, GridMap map);
 
-  // Any graph. Prizes are what a first visit of a node is worth; 1 each where there are none. Throws Error where every
-  // node is blocked. REQUIRES: blocked has a value per node, and so have labels, prizes and places where there are any;
-  // prizes are finite and not negative.
+  // Any graph. Throws Error where every node is blocked, and where prizes add up to more than a number holds.
+  // REQUIRES: blocked has a value per node, and so have labels, prizes and places where there are any; prizes are
+  // finite and not negative.
+  World(std::string name, GraphMap map);
   World(std::string name, Graph graph, std::vector<bool> blocked, std::vector<std::string> labels = {},
         std::vector<double> prizes = {}, GivenTask given = {}, Places places = {});
+
+  // The same the other way round; of a grid, its graph with places where it has a frame.
+  GraphMap to_map() const;
 
   // All of it, known beforehand. A world is used as its own view.
   const View& view() const { return data_->view; }
@@ -57,6 +62,9 @@ class World {
   // What the file says of the walk asked for.
   const GivenTask& given() const { return data_->given; }
 
+  // All edges of the file, where graph() leaves some out or they have labels; else null.
+  const Multigraph* multigraph() const { return data_->multigraph.get(); }
+
   // The graph with its blocked nodes, and without their edges: what can be walked.
   const Graph& graph() const;
   const Graph& open() const { return view().open(); }
@@ -79,6 +87,7 @@ class World {
     std::vector<std::string> labels = {};
     GivenTask given = {};
     Places places = {};
+    std::shared_ptr<const Multigraph> multigraph = {};
   };
 
   std::shared_ptr<const Data> data_;

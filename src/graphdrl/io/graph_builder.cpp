@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <unordered_set>
+#include <utility>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/text.h"
@@ -14,6 +15,7 @@ namespace graphdrl {
 namespace {
 
 constexpr std::string_view kBlockedName = "blocked";
+constexpr std::string_view kEdgeLabelName = "label";
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
@@ -74,19 +76,24 @@ void GraphBuilder::leave_out(NodeId node) {
 
 void GraphBuilder::add_edge(NodeId from, NodeId to, bool one_way) {
   last_ = one_way ? &one_way_ : &both_ways_;
-  last_->push_back({from, to, 1});
+  last_->edges.push_back({from, to, 1});
 }
 
 void GraphBuilder::direct_all() {
   directed_ = true;
-  if (one_way_.empty()) std::swap(one_way_, both_ways_);
-  one_way_.insert(one_way_.end(), both_ways_.begin(), both_ways_.end());
+  if (one_way_.edges.empty()) std::swap(one_way_, both_ways_);
+  for (std::size_t i = 0; i < both_ways_.edges.size(); ++i) append(one_way_, both_ways_.edges[i], both_ways_.label(i));
   both_ways_ = {};
 }
 
 void GraphBuilder::clear_edges() {
-  both_ways_.clear();
-  one_way_.clear();
+  both_ways_ = {};
+  one_way_ = {};
+}
+
+void GraphBuilder::append(EdgeList& list, const Edge& edge, std::string label) {
+  list.edges.push_back(edge);
+  if (!label.empty()) at(list.labels, static_cast<NodeId>(list.edges.size() - 1), std::string()) = std::move(label);
 }
 
 double GraphBuilder::number(const Attribute& attribute, bool may_be_negative) const {
@@ -131,7 +138,11 @@ void GraphBuilder::set_node(NodeId node, std::string_view name, std::string_view
 
 void GraphBuilder::set_edge(std::span<const Attribute> attributes) {
   const Attribute* const cost = costs_.best(attributes);
-  if (cost != nullptr) last_->back().cost = number(*cost, /*may_be_negative=*/false);
+  if (cost != nullptr) last_->edges.back().cost = number(*cost, /*may_be_negative=*/false);
+  for (const Attribute& attribute : attributes) {
+    if (!same_name(attribute.name, kEdgeLabelName) || attribute.value.empty()) continue;
+    at(last_->labels, static_cast<NodeId>(last_->edges.size() - 1), std::string()) = attribute.value;
+  }
 }
 
 void GraphBuilder::set_edge(std::string_view name, std::string_view value) {
@@ -153,9 +164,13 @@ void GraphBuilder::drop_left_out() {
     if (left_out_[node]) continue;
     number[node] = node_or_new(labels.empty() ? std::to_string(node) : labels[node]);
   }
-  for (auto* const edges : {&both_ways_, &one_way_}) {
-    std::erase_if(*edges, [&](const Edge& edge) { return left_out_[edge.a] || left_out_[edge.b]; });
-    for (Edge& edge : *edges) edge = {number[edge.a], number[edge.b], edge.cost};
+  for (EdgeList* const list : {&both_ways_, &one_way_}) {
+    const EdgeList all = std::exchange(*list, {});
+    for (std::size_t i = 0; i < all.edges.size(); ++i) {
+      const Edge& edge = all.edges[i];
+      if (left_out_[edge.a] || left_out_[edge.b]) continue;
+      append(*list, {number[edge.a], number[edge.b], edge.cost}, all.label(i));
+    }
   }
   if (start_ != kNoNode) start_ = number[start_];
   erase_where(blocked_, left_out_);
@@ -193,6 +208,18 @@ Places GraphBuilder::take_places() {
   return {};
 }
 
+// Of a directed graph, an edge that leads both ways is two.
+GraphBuilder::EdgeList GraphBuilder::take_edges() {
+  directed_ = directed_ || !one_way_.edges.empty();
+  if (!directed_) return std::move(both_ways_);
+  for (std::size_t i = 0; i < both_ways_.edges.size(); ++i) {
+    const Edge& edge = both_ways_.edges[i];
+    append(one_way_, edge, both_ways_.label(i));
+    if (edge.a != edge.b) append(one_way_, {edge.b, edge.a, edge.cost}, both_ways_.label(i));
+  }
+  return std::move(one_way_);
+}
+
 GraphMap GraphBuilder::build() {
   costs_.check("edge", place_());
   prizes_.check("node", place_());
@@ -206,13 +233,14 @@ GraphMap GraphBuilder::build() {
     const std::string mixed = names->mixed();
     if (!mixed.empty()) note(fmt::format("{} come from {}", names == &costs_ ? "costs" : "prizes", mixed));
   }
-  directed_ = directed_ || !one_way_.empty();
-  if (directed_) {
-    for (const Edge& edge : both_ways_) one_way_.insert(one_way_.end(), {edge, {edge.b, edge.a, edge.cost}});
-  }
+  EdgeList all = take_edges();
   GraphMap map;
-  map.graph = Graph::from_edges(count, directed_ ? one_way_ : both_ways_,
-                                directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  map.graph = Graph::from_edges(count, all.edges, directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  if (std::ssize(all.edges) > map.graph.edge_count() || !all.labels.empty()) {
+    if (!all.labels.empty()) all.labels.resize(all.edges.size());
+    map.multigraph =
+        std::make_shared<const Multigraph>(Multigraph{.edges = std::move(all.edges), .labels = std::move(all.labels)});
+  }
   map.blocked = std::move(blocked_);
   if (std::any_of(prize_.begin(), prize_.end(), [](double prize) { return prize != 1; })) {
     prize_.resize(count, 1.0);

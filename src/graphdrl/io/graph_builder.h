@@ -63,9 +63,18 @@ class GraphBuilder {
   GraphMap build();
 
  private:
+  struct EdgeList {
+    std::vector<Edge> edges;
+    std::vector<std::string> labels;  // as many as the last edge that has one
+
+    std::string label(std::size_t edge) const { return edge < labels.size() ? labels[edge] : std::string(); }
+  };
+
   double number(const Attribute& attribute, bool may_be_negative) const;
   void note(const std::string& text) const;
   void drop_left_out();
+  static void append(EdgeList& list, const Edge& edge, std::string label);
+  EdgeList take_edges();
   std::vector<std::string> take_labels();
   Places take_places();
 
@@ -77,9 +86,9 @@ class GraphBuilder {
   NodeId start_ = kNoNode;
   std::string unit_;
   bool directed_ = false;
-  std::vector<Edge> both_ways_;
-  std::vector<Edge> one_way_;
-  std::vector<Edge>* last_ = &both_ways_;  // where the edge added last stands
+  EdgeList both_ways_;
+  EdgeList one_way_;
+  EdgeList* last_ = &both_ways_;  // where the edge added last stands
   // Of nodes, as many as the last one that has such an attribute.
   std::vector<bool> left_out_;
   std::vector<bool> blocked_;

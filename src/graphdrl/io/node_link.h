@@ -1,6 +1,7 @@
 // Any graph as JSON in node-link form, as networkx's node_link_data and D3 write it.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 
 #include "graphdrl/graph/given_task.h"
 #include "graphdrl/graph/graph.h"
+#include "graphdrl/graph/multigraph.h"
 #include "graphdrl/graph/point.h"
 #include "graphdrl/io/map_options.h"
 
@@ -21,6 +23,7 @@ struct GraphMap {
   std::vector<double> prizes = {};  // [N], what a first visit is worth; empty where that is 1 everywhere
   Places places = {};               // where they lie
   GivenTask task = {};
+  std::shared_ptr<const Multigraph> multigraph = {};  // null where `graph` has all edges, and they have no labels
 };
 
 // An attribute of nodes that is not the map's own.

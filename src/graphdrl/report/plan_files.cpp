@@ -91,21 +91,13 @@ std::string format_walk(const World& world, std::span<const NodeId> walk) {
 namespace {
 
 GraphMap graph_of(const World& world) {
-  GraphMap map{.graph = world.graph(),
-               .blocked = world.blocked(),
-               .labels = world.labels(),
-               .prizes = world.prizes(),
-               .places = {}};
-  if (map.graph.edge_count() > kMostEdges) {
+  if (world.graph().edge_count() > kMostEdges) {
     throw Error({.what = "a graph with too many edges for this format",
                  .expected = fmt::format("at most {}", kMostEdges),
-                 .got = std::to_string(map.graph.edge_count()),
+                 .got = std::to_string(world.graph().edge_count()),
                  .where = world.name()});
   }
-  if (!has_coordinates(world)) return map;
-  map.places.unit = world.unit();
-  for (NodeId node = 0; node < world.node_count(); ++node) map.places.points.push_back(world.place(node));
-  return map;
+  return world.to_map();
 }
 
 std::string plan_graphml(const PlanReport& report) {
