@@ -65,6 +65,12 @@ TEST(MovingAi, IsReadAndWritten) {
   EXPECT_EQ(read_grid(text).blocked, map.blocked);
 }
 
+// Of the League of Robot Runners: E and S are where robots load and unload.
+TEST(MovingAi, TakesWarehouses) {
+  EXPECT_THAT(read_grid("type octile\nheight 1\nwidth 4\nmap\nE@S.\n").blocked,
+              ElementsAre(false, true, false, false));
+}
+
 TEST(MovingAi, RefusesWhatItsHeaderDoesNotSay) {
   const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
   EXPECT_THAT(complaint("type tile\n"), HasSubstr("file:1: a map of another type: expected octile, got 'tile'"));
