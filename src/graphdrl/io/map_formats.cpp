@@ -43,6 +43,12 @@ AnyMap read(std::string_view text, const std::string& source, const MapOptions& 
 }
 
 constexpr std::array kFormats = {
+    MapFormat{.name = "ros",
+              .ending = ".yaml",
+              .purpose = "occupancy grids of robots: map_server's YAML and picture",
+              .recognise = is_ros_map,
+              .read = read<parse_ros_map>,
+              .takes_unknown = true},
     MapFormat{.name = "node-link",
               .ending = ".json",
               .purpose = "any graph as JSON, as networkx and D3 write it",
@@ -82,12 +88,6 @@ constexpr std::array kFormats = {
               .recognise = is_moving_ai,
               .read = read<parse_moving_ai>,
               .write_grid = format_moving_ai},
-    MapFormat{.name = "ros",
-              .ending = ".yaml",
-              .purpose = "occupancy grids of robots: map_server's YAML and picture",
-              .recognise = is_ros_map,
-              .read = read<parse_ros_map>,
-              .takes_unknown = true},
     MapFormat{.name = "dot",
               .ending = ".dot",
               .purpose = "any graph in Graphviz's language",
