@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <span>
@@ -44,7 +45,9 @@ class Graph {
   // An edge between any two nodes, undirected. Lists of neighbours are in ascending order from the node on, and begin
   // again after the last one. Memory: O(nodes), and what the costs need. Cost: a look at every pair. Where costs are
   // not metric, a way through other nodes may be cheaper than the straight one [NearestFirst::run_cheapest()].
-  static Graph complete(NodeId node_count, std::shared_ptr<const PairCosts> costs);
+  // progress: told how much is done, 0 to 1.
+  static Graph complete(NodeId node_count, std::shared_ptr<const PairCosts> costs,
+                        const std::function<void(double share)>& progress = {});
   bool is_complete() const { return pair_costs_ != nullptr; }
   // Whether no cheaper way is missed where a complete graph's edges are only taken straight; true of other graphs.
   bool straight_ways_suffice() const { return !is_complete() || pair_costs_->metric(); }

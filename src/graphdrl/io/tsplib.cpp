@@ -95,7 +95,8 @@ class MatrixCosts final : public PairCosts {
 
 class TsplibReader {
  public:
-  TsplibReader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  TsplibReader(std::string_view text, const std::string& source, const MapOptions& options)
+      : text_(text), source_(source), options_(options) {}
 
   GraphMap read() {
     while (skip_space() && read_entry()) {
@@ -277,7 +278,7 @@ class TsplibReader {
       }
       if (task_.start == kNoNode) fail("DEPOT_SECTION names no depot");
     }
-    GraphMap map{.graph = Graph::complete(nodes_, pair_costs()),
+    GraphMap map{.graph = Graph::complete(nodes_, pair_costs(), options_.progress),
                  .blocked = std::vector<bool>(nodes_),
                  .labels = {},
                  .prizes = std::move(prizes_),
@@ -313,6 +314,7 @@ class TsplibReader {
 
   std::string_view text_;
   const std::string& source_;
+  const MapOptions& options_;
   std::size_t at_ = 0;
   NodeId nodes_ = 0;
   std::vector<Section> sections_;
@@ -332,8 +334,8 @@ bool is_tsplib(std::string_view text) {
   return is_keyword(first) || first.ends_with("_SECTION");
 }
 
-GraphMap parse_tsplib(std::string_view text, const std::string& source) {
-  return TsplibReader(text, source).read();
+GraphMap parse_tsplib(std::string_view text, const std::string& source, const MapOptions& options) {
+  return TsplibReader(text, source, options).read();
 }
 
 }  // namespace graphdrl

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "graphdrl/io/map_options.h"
 #include "graphdrl/io/node_link.h"
 
 namespace graphdrl {
@@ -19,6 +20,6 @@ bool is_tsplib(std::string_view text);
 // the node of DEPOT_SECTION is start and end. Labels are the file's numbers, from 1. Numbers are finite, and in
 // sections at most 1e15. Throws Error, naming `source` and mostly the line, on anything else, an unknown keyword too,
 // and where something is missing or comes twice; only COMMENT may. Cost: O(N²).
-GraphMap parse_tsplib(std::string_view text, const std::string& source);
+GraphMap parse_tsplib(std::string_view text, const std::string& source, const MapOptions& options = {});
 
 }  // namespace graphdrl
