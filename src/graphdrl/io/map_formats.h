@@ -27,6 +27,7 @@ struct MapFormat {
   bool takes_cost_attribute = false;
   bool takes_cell_pixels = false;
   bool takes_unknown = false;
+  bool takes_directed = false;
 };
 
 // In the order in which they are tried.
