@@ -185,6 +185,7 @@ TEST(EdgeList, SaysThatItWasTakenForOneAndWhatWasGuessed) {
       note_of("sep=;\nto;from;weight\na;b;2,5\n"),
       "file: taken for an edge list: fields between ';', the first line a header, column 'weight' is the cost with "
       "decimal commas, edges lead both ways (--directed: one way)");
+  EXPECT_THAT(note_of("from,to,km,road\na,b,2,x\n"), HasSubstr("every cost 1 (columns besides: km, road)"));
   EXPECT_THAT(note_of("a\tb\t2\n", {.directed = true}),
               HasSubstr("between tabs, no header, the third field is the cost, edges lead one way"));
 }
@@ -296,7 +297,7 @@ TEST(Chao, HoldsAProblemOfOneExplorer) {
   EXPECT_EQ(map.task.start, 0);
   EXPECT_EQ(map.task.end, 3);
   EXPECT_THAT(map.places.points.back(), (Point{0, 4}));
-  const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
+  const auto complaint = [](const std::string& other) { return error_of([&] { read(other); }); };
   EXPECT_THAT(complaint("n 4\nm 3\ntmax 9\n"), HasSubstr("file:2: teams cannot be planned yet"));
   EXPECT_THAT(complaint("n 2\nm 1\ntmax 9\n0 0 0\n"), HasSubstr("the file ends too early"));
   EXPECT_THAT(complaint("n 1\nm 1\ntmax 9\n0 0 0\n1 1 1\n"), HasSubstr("file:5: more places than n"));

@@ -25,7 +25,9 @@ double rounded_down(double value) {
   return fraction ? digits / unit : digits * unit;
 }
 
-double least_of_complete(const World& world, NodeId start, const std::function<void(double share)>& progress) {
+// Empty where a node that is worth nothing is out of reach: then the bound does not count edges from there.
+std::optional<double> least_of_complete(const World& world, NodeId start,
+                                        const std::function<void(double share)>& progress) {
   const Graph& graph = world.open();
   const int count = graph.node_count();
   std::vector<double> arrival(count);  // [N], the cheapest edge into a node
@@ -42,28 +44,29 @@ double least_of_complete(const World& world, NodeId start, const std::function<v
   }
   const auto counts = [&](NodeId node) { return node != start && world.prize(node) > 0; };
   double sum = 0;
-  double farthest = 0;
+  double farthest = 0;  // of straight ways; the cheapest ones are no longer
   for (NodeId node = 0; node < count; ++node) {
-    if (!counts(node)) continue;
-    sum += arrival[node];
-    farthest = std::max(farthest, graph.cost(start, graph.index_of(start, node)));
+    if (counts(node)) sum += arrival[node];
+    if (node != start) farthest = std::max(farthest, graph.cost(start, graph.index_of(start, node)));
   }
-  if (farthest <= sum) return sum;  // and no cheaper way is longer
+  if (farthest <= sum) return sum;
+  double least = sum;
   farthest = 0;
   NearestFirst().run_cheapest(graph, start, kNoLimit, [&](NodeId node, double cost) {
-    if (counts(node)) farthest = std::max(farthest, cost);
+    farthest = std::max(farthest, cost);
+    if (counts(node)) least = std::max(least, cost);
     return NearestFirst::Next::kThrough;
   });
-  return std::max(sum, farthest);
+  return farthest <= least ? std::optional(least) : std::nullopt;
 }
 
 }  // namespace
 
 std::optional<double> least_budget(const World& world, NodeId start,
                                    const std::function<void(double share)>& progress) {
-  if (!world.open().is_complete()) return least_budget_by_bounds(world, start);
-  const double least = least_of_complete(world, start, progress);
-  return world.open().integer_costs() ? least : rounded_down(least);
+  const auto least = world.open().is_complete() ? least_of_complete(world, start, progress) : std::nullopt;
+  if (!least) return least_budget_by_bounds(world, start);
+  return world.open().integer_costs() ? *least : rounded_down(*least);
 }
 
 std::optional<double> least_budget_by_bounds(const World& world, NodeId start) {

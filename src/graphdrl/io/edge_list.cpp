@@ -157,6 +157,10 @@ class EdgeListReader {
     header_ = true;
     cost_ = column_of(fields, cost_names_);
     if (cost_ != kNoColumn) cost_name_in_file_ = fields[cost_];
+    for (int column = 0; cost_ == kNoColumn && column < std::ssize(fields); ++column) {
+      if (column == from_ || column == to_) continue;
+      skipped_ += fmt::format("{}{}", skipped_.empty() ? "" : ", ", escaped(fields[column]));
+    }
     direction_ = column_of(fields, kDirectionColumns);
     direction_words_ = direction_ != kNoColumn && same_name(fields[direction_], "type") ? 1 : kOneWay.size();
     return true;
@@ -263,9 +267,10 @@ class EdgeListReader {
     const std::string between = separator_ == ' '    ? "spaces"
                                 : separator_ == '\t' ? "tabs"
                                                      : fmt::format("'{}'", escaped({&separator_, 1}));
-    const std::string cost = !costs_    ? "every cost 1"
-                             : !header_ ? "the third field is the cost"
-                                        : fmt::format("column {} is the cost", in_quotes(cost_name_in_file_));
+    std::string cost = header_ ? fmt::format("column {} is the cost", in_quotes(cost_name_in_file_))
+                               : std::string("the third field is the cost");
+    if (!costs_) cost = "every cost 1";
+    if (!skipped_.empty()) cost += fmt::format(" (columns besides: {})", skipped_);
     const std::string direction = one_way_ == 0     ? "edges lead both ways (--directed: one way)"
                                   : both_ways_ == 0 ? "edges lead one way"
                                                     : "edges lead one way or both, as they say";
@@ -288,6 +293,7 @@ class EdgeListReader {
   std::size_t direction_words_ = 0;      // how many of kOneWay and kBothWays it may have
   std::string_view cost_name_ = "cost";  // for the builder
   std::string cost_name_in_file_;
+  std::string skipped_;  // names of columns where none is the cost
   std::vector<std::string_view> cost_names_ = {cost_names().begin(), cost_names().end()};
   bool directed_ = false;  // a comment says so
   bool decimal_commas_ = false;
