@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "graphdrl/base/parallel.h"
 #include "graphdrl/graph/components.h"
 #include "graphdrl/graph/grid_map.h"
 #include "graphdrl/graph/search.h"
@@ -176,6 +177,33 @@ TEST(Search, FindsTheNearestInNeighbourOrder) {
 TEST(Search, CountsComponents) {
   EXPECT_EQ(count_components(Graph::grid(1, 3), {false, true, false}), 2);
   EXPECT_EQ(count_components(Graph::grid(2, 2), {false, false, false, false}), 1);
+}
+
+// Whatever the number of threads, of all edges, one by one.
+TEST(Graph, KnowsTheCostsOfACompleteGraph) {
+  class Costs final : public PairCosts {
+   public:
+    explicit Costs(double unit) : unit_(unit) {}
+    double cost(NodeId from, NodeId to) const override { return unit_ * (1 + (from * from + to * to) % 17); }
+
+   private:
+    double unit_;
+  };
+  for (const double unit : {1.0, 0.3}) {
+    for (const int count : {1, 2, 3, 50}) {
+      set_threads(1);
+      const Graph one = Graph::complete(count, std::make_shared<Costs>(unit));
+      set_threads(3);
+      const Graph graph = Graph::complete(count, std::make_shared<Costs>(unit));
+      set_threads(1);
+      EXPECT_EQ(graph.mean_cost(), one.mean_cost());
+      const Graph plain = Graph::from_edges(count, graph.edges());
+      EXPECT_EQ(graph.min_cost(), plain.min_cost());
+      EXPECT_EQ(graph.max_cost(), plain.max_cost());
+      EXPECT_NEAR(graph.mean_cost(), plain.mean_cost(), 1e-12 * plain.mean_cost());
+      EXPECT_EQ(graph.integer_costs(), plain.integer_costs());
+    }
+  }
 }
 
 }  // namespace

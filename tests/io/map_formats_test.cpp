@@ -44,6 +44,17 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"edge-list", "P5 10 3\n"},
       {"netpbm", "P5 10 3 255\n"},
       {"edge-list", "graph 1\n"},
+      {"edge-list", "sep=;\na;b\n"},
+      {"edge-list", "1 a\n2 b\n1 c\n#\n1 2\n"},
+      {"edge-list", "0 1\n1 0\n"},
+      {"edge-list", "0,1,1\n"},
+      {"edge-list", "4 4\n2 4\n1 3\n2 4\n"},
+      {"edge-list", "10,11\n11,10\n"},
+      {"tgf", "1 a\n2\n#\n1 2\n"},
+      {"chao", "n 2\nm 1\ntmax 3\n"},
+      {"metis", "% a ring\n3 3\n2 3\n1 3\n1 2\n"},
+      {"cell-table", "0,1\n0,0\n"},
+      {"cell-table", "0011\n0000\n"},
       {"gml", "# by hand\nCreator \"a\"\ngraph\n[\n]\n"},
       {"dot", "/* x */ strict  digraph \"a\" {"},
       {"dot", "// x\ngraph{}"},
@@ -65,6 +76,11 @@ TEST(MovingAi, IsReadAndWritten) {
   const std::string text = format_moving_ai(map);
   EXPECT_EQ(text, "type octile\nheight 2\nwidth 7\nmap\n...@@@@\n@@@@@@.\n");
   EXPECT_EQ(read_grid(text).blocked, map.blocked);
+}
+
+// Of the League of Robot Runners: E and S are where robots load and unload.
+TEST(MovingAi, TakesWarehouses) {
+  EXPECT_THAT(read_grid("type octile\nheight 1\nwidth 4\nmap\nE@S.\n").blocked, ElementsAre(false, true, false, false));
 }
 
 TEST(MovingAi, RefusesWhatItsHeaderDoesNotSay) {
@@ -153,6 +169,154 @@ TEST(EdgeList, RefusesWhatIsNoEdge) {
   EXPECT_THAT(complaint("1 2 {'weight': 'x'}\n"), HasSubstr("bad cost"));
   EXPECT_THAT(complaint("1 2 {'weight': 1\n"), HasSubstr("bad cost"));
   EXPECT_THAT(complaint("from,to\n"), HasSubstr("no edges"));
+}
+
+// What the reader tells, of an edge list named "file".
+std::string note_of(const std::string& text, MapOptions options = {}) {
+  std::string note;
+  options.note = [&](const std::string& line) { note = line; };
+  format_of(text).read(text, "file", options);
+  return note;
+}
+
+TEST(EdgeList, SaysThatItWasTakenForOneAndWhatWasGuessed) {
+  EXPECT_EQ(note_of("a b\nb c\n"),
+            "file: taken for an edge list: fields between spaces, no header, every cost 1, edges lead both ways "
+            "(--directed: one way)");
+  EXPECT_EQ(
+      note_of("sep=;\nto;from;weight\na;b;2,5\n"),
+      "file: taken for an edge list: fields between ';', the first line a header, column 'weight' is the cost with "
+      "decimal commas, edges lead both ways (--directed: one way)");
+  EXPECT_THAT(note_of("from,to,km,road\na,b,2,x\n"), HasSubstr("every cost 1 (columns besides: km, road)"));
+  EXPECT_THAT(note_of("a\tb\t2\n", {.directed = true}),
+              HasSubstr("between tabs, no header, the third field is the cost, edges lead one way"));
+}
+
+// Names that are no node below: above numbers, numbered themselves, or where nodes below occur again.
+TEST(EdgeList, KnowsAHeaderByItsRows) {
+  const auto nodes = [](const std::string& text) { return read_graph(text).graph.node_count(); };
+  EXPECT_EQ(nodes("id_1,id_2\n0,1\n1,2\n2,0\n"), 3);
+  EXPECT_EQ(nodes("# by hand\nKnoten Nachbar\n10 20\n20 30\n"), 3);
+  EXPECT_EQ(nodes("hither;thither;km\na;b;2\nb;c;3\n"), 3);
+  EXPECT_EQ(nodes("node1\tnode2\na\tb\nc\td\n"), 4);
+  // Nodes.
+  EXPECT_EQ(nodes("a1,a2\na2,a3\n"), 3) << "a2 occurs again";
+  EXPECT_EQ(nodes("a,b\nc,d\n"), 4) << "nothing tells";
+  EXPECT_EQ(nodes("a,b\n"), 2);
+  EXPECT_EQ(nodes("0 1\n2 3\n3 4\n"), 5) << "numbers";
+  EXPECT_EQ(nodes("a,b,5\nc,d,6\nd,e,7\n"), 5) << "a cost";
+  // Columns in any order.
+  const GraphMap map = read_graph("km,From Node,To Node,cost\n9,a,b,2\n9,b,c,3\n");
+  EXPECT_THAT(map.labels, ElementsAre("a", "b", "c"));
+  EXPECT_EQ(map.graph.cost(0, 0), 2);
+  EXPECT_THAT(read_graph("nr,stop1,stop2\n7,a,b\n8,b,c\n").labels, ElementsAre("a", "b", "c"));
+}
+
+TEST(EdgeList, TakesItsDirectionFromColumnCommentOrOption) {
+  const auto edges = [](const std::string& text, const MapOptions& options = {}) {
+    const Graph graph = std::get<GraphMap>(format_of(text).read(text, "file", options)).graph;
+    return std::pair(graph.directed(), graph.edge_count());
+  };
+  EXPECT_EQ(edges("Source,Target,Type,Weight\na,b,Directed,1\nb,c,Directed,1\n"), std::pair(true, std::int64_t{2}));
+  EXPECT_EQ(edges("Source,Target,Type\na,b,Directed\nb,c,Undirected\n"), std::pair(true, std::int64_t{3}));
+  EXPECT_EQ(edges("Source,Target,Type\na,b,Undirected\n"), std::pair(false, std::int64_t{1}));
+  EXPECT_EQ(edges("Source,Target,Type\na,b,1\n").first, false) << "a type of another kind";
+  EXPECT_EQ(edges("source;target;directed\na;b;true\n").first, true);
+  EXPECT_EQ(edges("# Directed graph (each unordered pair of nodes is saved once)\n0\t1\n1\t2\n").first, true);
+  EXPECT_EQ(edges("# Undirected graph: x\n0\t1\n").first, false);
+  EXPECT_EQ(edges("# directed: false\n0\t1\n").first, false);
+  EXPECT_EQ(edges("% asym unweighted\n1 2\n").first, true);
+  EXPECT_EQ(edges("0 1\n# Directed edges come here\n1 2\n").first, false) << "below the first edge";
+  EXPECT_EQ(edges("0 1\n1 2\n", {.directed = true}), std::pair(true, std::int64_t{2}));
+}
+
+TEST(EdgeList, TakesSpreadsheetsOfOtherCountries) {
+  for (const char* const text : {"sep=;\nsource;target;weight\na;b;2,5\n", "\"sep=;\"\r\na;b;2,5\r\n", "a;b;2,5;;\n",
+                                 "sep=|\na|b|2,5\n", "a\tb\t2,5\n", "source;target;weight\n\"a\";b;2.5\n"}) {
+    EXPECT_EQ(read_graph(text).graph.cost(0, 0), 2.5) << text;
+  }
+  EXPECT_THAT(read_graph("\"a;b\",c\nc,d\n").labels, ElementsAre("a;b", "c", "d"));
+  EXPECT_THAT(error_of([] { read("a;b;1.234,5\n"); }), HasSubstr("bad cost"));
+}
+
+// Nothing is an edge list because nothing else fits.
+TEST(EdgeList, FitsEveryLine) {
+  const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
+  EXPECT_THAT(complaint("1 2 3 4\n2 3\n3 4 5 6 7\n"), HasSubstr("file:3: not an edge: expected 4 fields"));
+  EXPECT_THAT(complaint("source,target\na,b,c\n"), HasSubstr("file:2: not an edge: expected 2 fields"));
+  EXPECT_THAT(complaint("10.5 14.4 0\n18.0 15.9 10\n"), HasSubstr("looks like a table of coordinates"));
+  EXPECT_THAT(complaint("x,y,score\n1,2,3\n2,1,4\n"), HasSubstr("looks like a table of coordinates"));
+  EXPECT_EQ(complaint("x,y\ny,z\n"), "");
+  EXPECT_THAT(complaint("Id;Label\n1;dock\n2;hall\n"), HasSubstr("looks like a table of nodes"));
+  EXPECT_THAT(complaint("version 1\n0\tmaps/a.map\t9\t9\t1\t1\t2\t2\t1.4\n"),
+              HasSubstr("file: this looks like a scenario of MovingAI"));
+  EXPECT_THAT(complaint("version 1.0\n0 a.map 9 9 1 1 2 2 1.4\n"), HasSubstr("looks like a scenario"));
+  EXPECT_THAT(complaint("%%MatrixMarket matrix coordinate real general\n3 3 1\n1 2 5\n"), HasSubstr("Matrix Market"));
+  EXPECT_THAT(complaint("nothing\n"), HasSubstr("no format of maps is known by this content"));
+  EXPECT_THAT(complaint("<svg/>"), HasSubstr("XML of another kind"));
+}
+
+TEST(Tgf, HoldsNodesAndEdges) {
+  const std::string text = "1 dock\n2 the hall\n3 lab\n#\n1 2 2.5\n2 3 1\n";
+  const GraphMap map = read_graph(text);
+  EXPECT_THAT(map.labels, ElementsAre("dock", "the hall", "lab"));
+  EXPECT_EQ(map.graph.edge_count(), 2);
+  EXPECT_EQ(map.graph.cost(0, 0), 2.5);
+  EXPECT_FALSE(map.graph.directed());
+  EXPECT_THAT(note_of(text), HasSubstr("edges of TGF lead both ways (--directed: one way)"));
+  EXPECT_TRUE(std::get<GraphMap>(format_of(text).read(text, "file", {.directed = true})).graph.directed());
+  EXPECT_THAT(read_graph("a\nb\n# \n\na b road\n").labels, ElementsAre("a", "b"));
+  EXPECT_THAT(note_of("a\nb\n#\na b road\n"), HasSubstr("1 with a text for a label cost 1"));
+  const auto complaint = [](const std::string& rest) { return error_of([&] { read("1 a\n2 b\n#\n" + rest); }); };
+  EXPECT_THAT(complaint("1 3\n"), HasSubstr("file:4: no such node"));
+  EXPECT_THAT(complaint("1\n"), HasSubstr("file:4: not an edge"));
+  EXPECT_THAT(complaint("1 2 -3\n"), HasSubstr("file:4: bad cost"));
+}
+
+TEST(Metis, HoldsNeighboursOfEachNode) {
+  const GraphMap ring = read_graph("4 4\n2 4\n1 3\n2 4\n1 3\n");
+  EXPECT_EQ(ring.graph.node_count(), 4);
+  EXPECT_EQ(ring.graph.edge_count(), 4);
+  EXPECT_THAT(ring.labels, ElementsAre("1", "2", "3", "4"));
+  // Weights of nodes, costs of edges, comments, a node without edges.
+  const GraphMap costs = read_graph("%x\n3 1 011\n5 2 7\n% y\n6 1 7\n8\n\n");
+  EXPECT_EQ(costs.graph.edge_count(), 1);
+  EXPECT_EQ(costs.graph.cost(1, 0), 7);
+  EXPECT_EQ(read_graph("3 1\n2\n1\n\n").graph.node_count(), 3);
+  const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
+  EXPECT_THAT(complaint("3 3\n2 3\n1 3\n2 2\n"), HasSubstr("looks like a graph of METIS, but edge 1 3 is not listed"));
+  EXPECT_THAT(complaint("2 1 1\n2 5\n1 6\n"), HasSubstr("not listed at both of its ends"));
+}
+
+TEST(Chao, HoldsAProblemOfOneExplorer) {
+  const std::string text = "n 4\nm 1\ntmax 9.5\n0.0\t0.0\t0\n3 0 20\n3.0;4.0;30\n0 4 0\n";
+  const GraphMap map = read_graph(text);
+  EXPECT_EQ(map.graph.node_count(), 4);
+  EXPECT_TRUE(map.graph.is_complete());
+  EXPECT_EQ(map.graph.cost(0, map.graph.index_of(0, 2)), 5);
+  EXPECT_THAT(map.prizes, ElementsAre(0, 20, 30, 0));
+  EXPECT_EQ(map.task.budget, 9.5);
+  EXPECT_EQ(map.task.start, 0);
+  EXPECT_EQ(map.task.end, 3);
+  EXPECT_THAT(map.places.points.back(), (Point{0, 4}));
+  const auto complaint = [](const std::string& other) { return error_of([&] { read(other); }); };
+  EXPECT_THAT(complaint("n 4\nm 3\ntmax 9\n"), HasSubstr("file:2: teams cannot be planned yet"));
+  EXPECT_THAT(complaint("n 2\nm 1\ntmax 9\n0 0 0\n"), HasSubstr("the file ends too early"));
+  EXPECT_THAT(complaint("n 1\nm 1\ntmax 9\n0 0 0\n1 1 1\n"), HasSubstr("file:5: more places than n"));
+  EXPECT_THAT(complaint("n 1\nm 1\ntmax 9\n0 0 -1\n"), HasSubstr("bad score"));
+  EXPECT_THAT(complaint("n 1\nm 1\ntmax 9\n0 0\n"), HasSubstr("strange line"));
+}
+
+TEST(CellTable, IsAGrid) {
+  for (const char* const text :
+       {"0,0,1\n0,1,1\n", "0;0;1\r\n0;1;1\r\n", "0 0 1\n0 1 1", "0\t0\t1\n0\t1\t1\n\n", "001\n011\n"}) {
+    const GridMap map = read_grid(text);
+    EXPECT_EQ(map.rows, 2);
+    EXPECT_THAT(map.blocked, ElementsAre(false, false, true, false, true, true)) << text;
+  }
+  EXPECT_THAT(note_of("0,0,1\n0,1,1\n"), HasSubstr("taken for a grid of 2 rows and 3 columns, 1 is blocked"));
+  EXPECT_THAT(note_of("0,1,0\n1,0,1\n0,1,0\n"), HasSubstr("an adjacency matrix is read as"));
+  EXPECT_THAT(error_of([] { read("1,1\n1,1\n"); }), HasSubstr("no free cell"));
 }
 
 constexpr const char* kGraphMl = R"(<?xml version="1.0" encoding="UTF-8"?>

@@ -10,7 +10,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-GreyPicture parsed(const std::string& bytes) {
+Raster parsed(const std::string& bytes) {
   return read_picture(bytes, "file");
 }
 
@@ -26,10 +26,13 @@ TEST(Picture, ReadsEveryKindOfNetpbm) {
       std::string("P6\n2 2\n255\n") + std::string(3, '\xff') + std::string(6, '\0') + std::string(3, '\xff'),
   };
   for (const std::string& bytes : pictures) {
-    const GreyPicture picture = parsed(bytes);
+    const Raster picture = parsed(bytes);
     EXPECT_EQ(picture.width, 2);
     EXPECT_EQ(picture.height, 2);
-    EXPECT_THAT(picture.pixels, ElementsAre(255, 0, 0, 255)) << bytes;
+    ASSERT_EQ(std::ssize(picture.samples), 4 * picture.channels);
+    for (int i = 0; i < 4 * picture.channels; ++i) {
+      EXPECT_EQ(picture.samples[i], i / picture.channels % 3 == 0 ? 255 : 0) << bytes;
+    }
   }
 }
 
@@ -64,6 +67,9 @@ TEST(Picture, BecomesAGrid) {
   EXPECT_EQ(cells.rows, 2);
   EXPECT_EQ(cells.cols, 2);
   EXPECT_THAT(cells.blocked, ElementsAre(false, true, false, true));
+  // Yellow and red, as bright as they look.
+  const GridMap colours = parse_netpbm_map("P3\n2 1\n255\n255 255 0  255 0 0\n", "file");
+  EXPECT_THAT(colours.blocked, ElementsAre(false, true));
   EXPECT_THAT(error_of([&] { parse_netpbm_map(bytes, "file", {.cell_pixels = 5}); }), HasSubstr("smaller than a cell"));
   EXPECT_THAT(error_of([&] { parse_netpbm_map("P2\n1 1 255 0", "file"); }), HasSubstr("no free cell"));
 }

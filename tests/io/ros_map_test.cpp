@@ -1,6 +1,8 @@
 #include "graphdrl/io/ros_map.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <png.h>
 
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/map_source.h"
@@ -49,6 +51,68 @@ TEST_F(RosMap, RawModeHoldsOccupancy) {
   const std::string yaml = std::string("image: a.pgm\nmode: raw\n") + kHead;
   EXPECT_THAT(read(yaml).blocked, ElementsAre(false, true, true, true));
   EXPECT_THAT(read(yaml, {.unknown_is_free = true}).blocked, ElementsAre(false, false, true, false));
+}
+
+// As map_server and nav2 do: means of red, green and blue, no luminance; alpha is a fourth in trinary mode only.
+TEST_F(RosMap, CountsColoursByTheirMean) {
+  // Green and yellow look bright, and are dark by their mean; light grey; white.
+  write_file(folder_ / "a.pgm", "P3\n4 1 255\n0 255 0  255 255 0  230 230 230  255 255 255\n");
+  const std::string yaml = std::string("image: a.pgm\noccupied_thresh: 0.65\nfree_thresh: 0.196\n") + kHead;
+  EXPECT_THAT(read(yaml).blocked, ElementsAre(true, true, false, false));
+  EXPECT_THAT(read(yaml, {.unknown_is_free = true}).blocked, ElementsAre(true, false, false, false));
+}
+
+TEST_F(RosMap, TakesWhatIsTransparentForUnknown) {
+  // Grey and alpha: white, black and black, white; the second and the last are transparent, or nearly opaque.
+  const auto write = [&](char alpha) {
+    png_image image = {};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = 4;
+    image.height = 1;
+    image.format = PNG_FORMAT_GA;
+    const std::string samples{'\xff', '\xff', 0, alpha, 0, '\xff', '\xff', alpha};
+    std::string bytes(1000, '\0');
+    png_alloc_size_t size = bytes.size();
+    ASSERT_NE(png_image_write_to_memory(&image, bytes.data(), &size, 0, samples.data(), 0, nullptr), 0);
+    write_file(folder_ / "a.png", bytes.substr(0, size));
+  };
+  const auto blocked = [&](const std::string& mode, bool unknown_is_free) {
+    return read("image: a.png\nmode: " + mode + "\n" + kHead, {.unknown_is_free = unknown_is_free}).blocked;
+  };
+  write(0);
+  EXPECT_THAT(blocked("scale", false), ElementsAre(false, true, true, true));
+  EXPECT_THAT(blocked("scale", true), ElementsAre(false, false, true, false));
+  EXPECT_THAT(blocked("Trinary", false), ElementsAre(false, true, true, true));
+  EXPECT_THAT(blocked("trinary", true), ElementsAre(false, true, true, false)) << "means 0, 63.75 and 191.25";
+  write('\xfe');
+  EXPECT_THAT(blocked("scale", false), ElementsAre(false, true, true, true)) << "not opaque";
+  EXPECT_THAT(blocked("trinary", false), ElementsAre(false, true, true, false));
+}
+
+// Recognition asks the YAML parser.
+TEST_F(RosMap, IsYamlHoweverItIsWritten) {
+  for (const char* const yaml :
+       {"image : a.pgm\nresolution : 0.5\n", "\"image\": a.pgm\n'resolution': 0.5\nnegate: False\n",
+        "{\"image\": \"a.pgm\", \"resolution\": 0.5, \"negate\": 0}\n",
+        "---\n# by hand\nresolution: 0.5\nimage: a.pgm\n...\n",
+        "? image\n: a.pgm\n? resolution\n: 0.5\nnegate: off\n"}) {
+    EXPECT_THAT(read(yaml).blocked, ElementsAre(false, true, true, false)) << yaml;
+  }
+  EXPECT_THAT(read("image: a.pgm\nresolution: 0.5\nnegate: TRUE\n").blocked, ElementsAre(true, true, false, true));
+}
+
+TEST_F(RosMap, TakesThePictureBesideItForThatOfAnotherMachine) {
+  std::string note;
+  const MapOptions options{.note = [&](const std::string& text) { note = text; }};
+  for (const char* const path : {"/home/me/maps/a.pgm", "'C:\\maps\\a.pgm'"}) {
+    note = "";
+    EXPECT_THAT(read(fmt::format("image: {}\n{}", path, kHead), options).blocked,
+                ElementsAre(false, true, true, false));
+    EXPECT_THAT(note, HasSubstr("a.pgm beside it is read, not")) << path;
+  }
+  note = "";
+  read(fmt::format("image: {}\n{}", (folder_ / "a.pgm").string(), kHead), options);
+  EXPECT_EQ(note, "") << "its own machine";
 }
 
 TEST_F(RosMap, ReadsNothingButItsPicture) {

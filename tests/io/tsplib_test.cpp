@@ -56,6 +56,28 @@ TEST(Tsplib, ReadsAnOrienteeringProblem) {
   EXPECT_EQ(graph.without({false, true, false, false}).edge_count(), 3);
 }
 
+TEST(Tsplib, TakesSectionsAndKeywordsInAnyOrder) {
+  const std::string whole = kHeader + kPlaces + kScores + kDepot;
+  const std::string sections = kScores + "DEPOT_SECTION\n2\n-1\n" + kPlaces;
+  for (const std::string& text : {sections + kHeader + "EOF\n", kPlaces + kHeader + kScores + kDepot}) {
+    EXPECT_TRUE(is_tsplib(text));
+    const GraphMap map = parse(text);
+    EXPECT_EQ(map.prizes, parse(whole).prizes);
+    EXPECT_EQ(map.task.start, 1);
+    EXPECT_EQ(map.graph.mean_cost(), 3);
+  }
+  const GraphMap matrix = parse(
+      "TYPE: TSP\nEDGE_WEIGHT_SECTION\n1 2\n3\nDIMENSION: 3\nEDGE_WEIGHT_FORMAT: UPPER_ROW\nEDGE_WEIGHT_TYPE: "
+      "EXPLICIT");
+  EXPECT_EQ(matrix.graph.cost(1, 0), 3);
+}
+
+// As TSPLIB's bayg29 and others have them.
+TEST(Tsplib, TakesCommentsBehindTypes) {
+  const std::string text = replaced(kHeader, ": OP", ": OP (by hand)") + kPlaces + kScores + kDepot;
+  EXPECT_EQ(parse(replaced(text, ": EUC_2D", ": EUC_2D  rounded")).graph.max_cost(), 5);
+}
+
 TEST(Tsplib, SkipsWhatChangesNothing) {
   const std::string more =
       "COMMENT : more\nTSPSOL : 7\nNODE_COORD_TYPE : TWOD_COORDS\nDISPLAY_DATA_TYPE : "
@@ -113,7 +135,7 @@ TEST(Tsplib, SaysWhatIsWrong) {
       {kHeader + kPlaces + kDepot, "NODE_SCORE_SECTION is missing"},
       {kHeader + kScores + kDepot, "NODE_COORD_SECTION is missing"},
       {replaced(whole, "COST_LIMIT : 20\n", ""), "COST_LIMIT is missing"},
-      {replaced(whole, "DIMENSION : 4\n", ""), "comes before DIMENSION"},
+      {replaced(whole, "DIMENSION : 4\n", ""), "DIMENSION is missing"},
       {replaced(whole, ": 4\n", ": 5\n"), "not a number in NODE_COORD_SECTION"},
       {replaced(whole, ": 4\n", ": 0\n"), "bad DIMENSION"},
       {replaced(whole, ": 20", ": -20"), "a negative COST_LIMIT"},

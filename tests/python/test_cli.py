@@ -120,13 +120,33 @@ def test_maps_info_and_show(run, tmp_path):
         "map": "paper:a", "nodes": 25, "edges": 40, "directed": False, "weighted": False, "valid_nodes": 19,
         "components": 1, "connected": True, "largest_component": 19,
         "degrees": {"min": 1, "mean": 44 / 19, "max": 4}, "costs": {"min": 1, "mean": 1, "max": 1},
-        "least_budget": 20, "bounding_box": [0, 0, 4, 4], "unit": "cells", "cells": [5, 5],
+        "least_budget": 20, "least_budget_start": 0, "bounding_box": [0, 0, 4, 4], "unit": "cells", "cells": [5, 5],
     }  # fmt: skip
     process = run("graphdrl", "maps", "show", "paper:a", "--walk", "0,1,2", "--svg", tmp_path / "a.svg")
     assert process.returncode == 0
     assert process.stdout.splitlines()[1:6] == ["S → E # .", ". # # # .", ". # . . .", ". # . . .", ". . . . ."]
     assert (tmp_path / "a.svg").read_text().count("<circle") == 25 + 2 + 1  # the start, the legend
     assert run("graphdrl", "maps", "show", "paper:a").stdout == "paper:a: 19 valid nodes\n" + MAP_A
+
+
+def test_maps_info_says_what_holds_for_which_walk(run, tmp_path):
+    (tmp_path / "path.csv").write_text("b,a,2.5\nb,c,1\n")
+    text = run("graphdrl", "maps", "info", tmp_path / "path.csv").stdout
+    assert "  budget   no walk from b visits every node for less than 4.5\n" in text
+    (tmp_path / "millions.csv").write_text("a,b,1234567\nb,c,1234567\n")
+    text = run("graphdrl", "maps", "info", tmp_path / "millions.csv").stdout
+    assert "costs    1234567 to 1234567" in text and "less than 2469134\n" in text
+    (tmp_path / "free.txt").write_text("a b 0\nb c 0\nc a 0\n")
+    assert "costs    0 to 0, 0 in the mean" in run("graphdrl", "maps", "info", tmp_path / "free.txt").stdout
+
+
+@pytest.mark.parametrize("arguments", [["maps", "show", "paper"], ["maps", "info", "paper", "--json"], ["--help"]])
+def test_a_closed_pipe_ends_silently(arguments):
+    reader, writer = os.pipe()
+    os.close(reader)
+    process = subprocess.run([BIN / "graphdrl", *arguments], stdout=writer, stderr=subprocess.PIPE, check=False)
+    os.close(writer)
+    assert (process.returncode, process.stderr) == (141, b"")
 
 
 def test_a_plan_goes_out_and_comes_back(run, tmp_path):
@@ -554,7 +574,7 @@ def test_closed_streams_are_no_crash():
         return subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False).stdout.split()[-1]
 
     graphdrl = shlex.quote(str(BIN / "graphdrl"))
-    assert status(f"{graphdrl} evaluate --policy nearest | true; echo ${{PIPESTATUS[0]}}") == "2"
+    assert status(f"{graphdrl} evaluate --policy nearest | true; echo ${{PIPESTATUS[0]}}") == "141"
     assert status(f"{graphdrl} evaluate --fast 2>&-; echo $?") == "2"
     assert status(f"{graphdrl} evaluate --policy nearest >/dev/full; echo $?") == "2"
 

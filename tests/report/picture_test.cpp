@@ -80,11 +80,11 @@ TEST(Picture, OfManyCellsIsOneBitmap) {
 TEST(Picture, IsDrawnAsPng) {
   const World world = grid_world("...\n.#.\n");
   const std::string png = Picture(world, std::vector<NodeId>{1, 0, 1, 2}, "a", {"b"}).png();
-  const GreyPicture picture = read_png(png, "picture");
+  const Raster picture = read_picture(png, "picture");
   EXPECT_EQ(picture.width, 420);
-  EXPECT_EQ(picture.pixels.front(), 255);
-  EXPECT_GT(std::count(picture.pixels.begin(), picture.pixels.end(), 255), picture.width * picture.height / 2);
-  EXPECT_LT(*std::min_element(picture.pixels.begin(), picture.pixels.end()), 80);
+  EXPECT_EQ(picture.samples.front(), 255);
+  EXPECT_GT(std::count(picture.samples.begin(), picture.samples.end(), 255), picture.width * picture.height / 2);
+  EXPECT_LT(*std::min_element(picture.samples.begin(), picture.samples.end()), 80);
 }
 
 // A path can be laid out as it is, a large one as well as a small one.

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <optional>
 
 #include "graphdrl/base/error.h"
@@ -14,12 +13,13 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
+#include "graphdrl/answer/least_budget.h"
 #include "graphdrl/graph/components.h"
+#include "graphdrl/graph/search.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/map_source.h"
 #include "graphdrl/io/node_link.h"
-#include "graphdrl/planners/bound.h"
 #include "graphdrl/report/map_drawing.h"
 #include "graphdrl/report/picture.h"
 #include "graphdrl/report/terminal_picture.h"
@@ -27,8 +27,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr double kMostSpent = 1e300;  // no limit for walks that are shown
-constexpr double kBudgetStep = 1e-6;  // of a budget that visits all, where costs are no whole numbers
+constexpr double kMostSpent = 1e300;  // walks that are shown cost what they cost
 
 struct MapsOptions {
   std::string map;
@@ -53,109 +52,139 @@ struct GenerateOptions {
   std::string out;
 };
 
-// The least budget with which some walk may visit every node: no walk does with less. Empty where none does at all.
-// The bound [planners/bound.h] turned round.
-std::optional<double> least_budget(const World& world) {
-  const NodeId given = world.given().start;
-  const NodeId start = given == kNoNode ? world.valid_nodes().front() : given;
-  const auto may_visit_all = [&](double budget) {
-    return max_prize(Task(world, start, budget)) >= world.total_prize() * (1 - kPrizeRounding);
-  };
-  const Graph& open = world.open();
-  double high = 2.0 * world.valid_count() * open.max_cost();  // a tour along a spanning tree
-  if (open.directed()) high *= world.valid_count();
-  if (high == 0) return 0;
-  if (!may_visit_all(high)) return std::nullopt;
-  // In steps: of 1 where costs are whole numbers.
-  const double step = open.integer_costs() ? 1 : kBudgetStep * high;
-  std::int64_t too_few = -1;
-  auto enough = static_cast<std::int64_t>(std::ceil(high / step));
-  while (enough - too_few > 1) {
-    const std::int64_t middle = std::midpoint(too_few, enough);
-    (may_visit_all(static_cast<double>(middle) * step) ? enough : too_few) = middle;
-  }
-  return static_cast<double>(enough) * step;
+template <typename T>
+struct Spread {
+  T min;
+  double mean;
+  T max;
+};
+
+struct Box {
+  double left = kNoLimit, bottom = kNoLimit, right = -kNoLimit, top = -kNoLimit;
+};
+
+// What there is to say of a map.
+struct MapInfo {
+  const World& world;
+  Components components;
+  Spread<int> degrees;                 // of valid nodes
+  Spread<double> costs;                // of the edges that can be walked
+  NodeId start;                        // the file's, else the first valid node
+  std::optional<double> least_budget;  // of walks from there; empty where nothing is known
+  std::optional<Box> box;              // around the places
+};
+
+// What a user calls a node.
+std::string spoken_name(const World& world, NodeId node) {
+  if (!world.labels().empty()) return world.labels()[node];
+  if (!world.has_cells()) return std::to_string(node);
+  const Cell cell = world.map()->cell(node);
+  return fmt::format("{},{}", cell.row, cell.col);
 }
 
-Json describe(const World& world) {
+MapInfo describe(const World& world, const std::function<void(double share)>& progress) {
   const Graph& open = world.open();
-  const Components components = find_components(open, world.blocked());
-  int least_degree = std::numeric_limits<int>::max();
-  int most_degree = 0;
-  for (const NodeId node : world.valid_nodes()) {
-    least_degree = std::min(least_degree, open.degree(node));
-    most_degree = std::max(most_degree, open.degree(node));
-  }
+  const NodeId given = world.given().start;
   const double arcs = static_cast<double>(open.edge_count()) * (open.directed() ? 1 : 2);
+  const double mean_cost = open.max_cost() > 0 ? open.mean_cost() : 0;
+  MapInfo info{.world = world,
+               .components = find_components(open, world.blocked()),
+               .degrees = {std::numeric_limits<int>::max(), arcs / world.valid_count(), 0},
+               .costs = {open.min_cost(), mean_cost, open.max_cost()},
+               .start = given == kNoNode ? world.valid_nodes().front() : given,
+               .least_budget = {},
+               .box = {}};
+  for (const NodeId node : world.valid_nodes()) {
+    info.degrees.min = std::min(info.degrees.min, open.degree(node));
+    info.degrees.max = std::max(info.degrees.max, open.degree(node));
+  }
+  if (info.components.count() == 1) info.least_budget = least_budget(world, info.start, progress);
+  if (!world.has_places()) return info;
+  info.box = Box();
+  for (NodeId node = 0; node < world.node_count(); ++node) {
+    const Point at = world.place(node);
+    info.box = {std::min(info.box->left, at.x), std::min(info.box->bottom, at.y), std::max(info.box->right, at.x),
+                std::max(info.box->top, at.y)};
+  }
+  return info;
+}
+
+template <typename T>
+Json spread_json(const Spread<T>& spread) {
+  return {{"min", spread.min}, {"mean", spread.mean}, {"max", spread.max}};
+}
+
+Json info_json(const MapInfo& info) {
+  const World& world = info.world;
   Json json = {{"map", world.name()},
-               {"nodes", world.graph().node_count()},
+               {"nodes", world.node_count()},
                {"edges", world.graph().edge_count()},
                {"directed", world.graph().directed()},
                {"weighted", world.graph().weighted()},
                {"valid_nodes", world.valid_count()},
-               {"components", components.count()},
-               {"connected", components.count() == 1},
-               {"largest_component", components.sizes[components.largest()]},
-               {"degrees", {{"min", least_degree}, {"mean", arcs / world.valid_count()}, {"max", most_degree}}},
-               {"costs", {{"min", open.min_cost()}, {"mean", open.mean_cost()}, {"max", open.max_cost()}}},
-               {"least_budget", or_null(components.count() == 1 ? least_budget(world) : std::nullopt)},
+               {"components", info.components.count()},
+               {"connected", info.components.count() == 1},
+               {"largest_component", info.components.sizes[info.components.largest()]},
+               {"degrees", spread_json(info.degrees)},
+               {"costs", spread_json(info.costs)},
+               {"least_budget", or_null(info.least_budget)},
+               {"least_budget_start", info.least_budget ? Json(info.start) : Json()},
                {"bounding_box", nullptr},
                {"unit", world.has_places() ? Json(world.unit()) : Json()}};
-  if (world.has_cells()) json["cells"] = {world.map()->rows, world.map()->cols};
-  if (world.has_places()) {
-    double left = kNoLimit, bottom = kNoLimit, right = -kNoLimit, top = -kNoLimit;
-    for (NodeId node = 0; node < world.node_count(); ++node) {
-      const Point at = world.place(node);
-      left = std::min(left, at.x);
-      right = std::max(right, at.x);
-      bottom = std::min(bottom, at.y);
-      top = std::max(top, at.y);
-    }
-    json["bounding_box"] = {left, bottom, right, top};
+  if (const Multigraph* const all = world.multigraph()) {
+    json["loops"] = all->loops();
+    json["parallel_edges"] = all->parallel_edges(world.graph());
   }
+  if (world.has_cells()) json["cells"] = {world.map()->rows, world.map()->cols};
+  if (info.box) json["bounding_box"] = {info.box->left, info.box->bottom, info.box->right, info.box->top};
   return json;
 }
 
-std::string describe_in_words(const Json& map) {
-  const auto number = [](const Json& json) { return fmt::format("{:.6g}", json.get<double>()); };
-  const int components = map["components"].get<int>();
+std::string info_text(const MapInfo& info) {
+  const World& world = info.world;
+  const Graph& graph = world.graph();
+  const int components = info.components.count();
   std::string text = fmt::format(
-      "{}: {} nodes, {}{}{} edges, {} valid nodes in {} connected component{}\n",
-      escaped(map["map"].get<std::string>()), map["nodes"].get<int>(), map["directed"].get<bool>() ? "directed " : "",
-      map["weighted"].get<bool>() ? "weighted " : "", map["edges"].get<std::int64_t>(), map["valid_nodes"].get<int>(),
-      components, components == 1 ? "" : fmt::format("s, the largest of {}", map["largest_component"].get<int>()));
-  if (map.contains("cells"))
-    text += fmt::format("  cells    {} rows, {} columns\n", map["cells"][0].get<int>(), map["cells"][1].get<int>());
-  const Json& degrees = map["degrees"];
-  text += fmt::format("  degrees  {} to {}, {:.3g} in the mean\n", degrees["min"].get<int>(), degrees["max"].get<int>(),
-                      degrees["mean"].get<double>());
-  if (map["weighted"].get<bool>()) {
-    const Json& costs = map["costs"];
-    text += fmt::format("  costs    {} to {}, {} in the mean\n", number(costs["min"]), number(costs["max"]),
-                        number(costs["mean"]));
+      "{}: {} nodes, {}{}{} edges, {} valid nodes in {} connected component{}\n", escaped(world.name()),
+      world.node_count(), graph.directed() ? "directed " : "", graph.weighted() ? "weighted " : "", graph.edge_count(),
+      world.valid_count(), components,
+      components == 1 ? "" : fmt::format("s, the largest of {}", info.components.sizes[info.components.largest()]));
+  if (const Multigraph* const all = world.multigraph()) {
+    const auto loops = all->loops();
+    const auto parallel = all->parallel_edges(graph);
+    if (loops + parallel > 0) {
+      text += fmt::format("  besides  {} loops and {} parallel edges, which no walk over nodes needs\n", loops, parallel);
+    }
   }
-  if (!map["least_budget"].is_null()) {
-    text += fmt::format("  budget   no walk visits every node for less than {}\n", number(map["least_budget"]));
+  if (world.has_cells()) text += fmt::format("  cells    {} rows, {} columns\n", world.map()->rows, world.map()->cols);
+  text +=
+      fmt::format("  degrees  {} to {}, {:.3g} in the mean\n", info.degrees.min, info.degrees.max, info.degrees.mean);
+  if (graph.weighted()) {
+    text += fmt::format("  costs    {} to {}, {:.6g} in the mean\n", info.costs.min, info.costs.max, info.costs.mean);
   }
-  if (!map["bounding_box"].is_null()) {
-    const Json& box = map["bounding_box"];
-    const std::string unit = map["unit"].get<std::string>();
-    text += fmt::format("  lies     x from {} to {}, y from {} to {}{}{}\n", number(box[0]), number(box[2]),
-                        number(box[1]), number(box[3]), unit.empty() ? "" : " ", escaped(unit));
+  if (info.least_budget) {
+    text += fmt::format("  budget   no walk from {} visits every node for less than {}\n",
+                        escaped(spoken_name(world, info.start)), *info.least_budget);
+  }
+  if (info.box) {
+    text += fmt::format("  lies     x from {:.6g} to {:.6g}, y from {:.6g} to {:.6g}{}{}\n", info.box->left,
+                        info.box->right, info.box->bottom, info.box->top, world.unit().empty() ? "" : " ",
+                        escaped(world.unit()));
   }
   return text;
 }
 
 void show_info(const MapsOptions& options) {
+  const std::vector<World> worlds = load_worlds({options.map}, options.reading);
   Json maps = Json::array();
-  for (const World& world : load_worlds({options.map}, options.reading)) maps.push_back(describe(world));
-  if (options.json) {
-    print_json(maps.size() == 1 ? maps[0] : maps);
-    return;
-  }
   std::string text;
-  for (const Json& map : maps) text += describe_in_words(map);
-  print_text(text);
+  for (const World& world : worlds) {
+    const MapInfo info = describe(world, options.reading.progress);
+    if (options.json) maps.push_back(info_json(info));
+    if (!options.json) text += info_text(info);
+  }
+  if (!options.json) return print_text(text);
+  print_json(maps.size() == 1 ? maps[0] : maps);
 }
 
 void show_map(const MapsOptions& options) {

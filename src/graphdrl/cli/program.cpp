@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <limits>
+#include <memory>
+#include <optional>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
+#include "graphdrl/report/progress.h"
 
 namespace graphdrl {
 namespace {
@@ -54,14 +59,31 @@ void append_json(const Json& json, int indent, std::string& text) {
   text += json.is_object() ? '}' : ']';
 }
 
-}  // namespace
+// A bar on standard error for work that takes longer than a second.
+class WorkBar {
+ public:
+  void show(double share) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!begin_) begin_ = now;
+    if (share < 1 && now - *begin_ > std::chrono::seconds(1)) {
+      if (!display_) display_.emplace(stderr, "reading", 0);
+      display_->show_line(fmt::format("{:.0f} %", 100 * share), share);
+    }
+    if (share < 1) return;
+    if (display_) display_->finish();
+    display_.reset();
+    begin_.reset();
+  }
 
-int run_program(CLI::App& app, int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe fails like any other write
-  set_threads(hardware_threads());
+ private:
+  std::optional<std::chrono::steady_clock::time_point> begin_;
+  std::optional<ProgressDisplay> display_;
+};
+
+// Runs the command asked for, or prints the help or the version that is.
+void parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
-    return kExitDone;
   } catch (const CLI::CallForHelp&) {
     // The help of the command asked about, not of the whole program.
     const CLI::App* asked = &app;
@@ -71,9 +93,18 @@ int run_program(CLI::App& app, int argc, char** argv) {
       asked = asked->get_subcommands().front();
     }
     print_text(asked->help(parents));
-    return kExitDone;
   } catch (const CLI::CallForVersion& call) {
     print_text(fmt::format("{}\n", call.what()));
+  }
+}
+
+}  // namespace
+
+int run_program(CLI::App& app, int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe fails like any other write
+  set_threads(hardware_threads());
+  try {
+    parse(app, argc, argv);
     return kExitDone;
   } catch (const CLI::RuntimeError& error) {  // a command that chose its own status
     return error.get_exit_code();
@@ -99,6 +130,7 @@ void add_threads_option(CLI::App& command) {
 
 void add_map_options(CLI::App& command, MapOptions& options) {
   options.note = [](const std::string& note) { print_diagnostic(escaped(note) + "\n"); };
+  options.progress = [bar = std::make_shared<WorkBar>()](double share) { bar->show(share); };
   const auto add = [&](const std::string& name, auto& value, const std::string& help) {
     return command.add_option(name, value, help)->group("Options for maps");
   };
@@ -117,6 +149,8 @@ void add_map_options(CLI::App& command, MapOptions& options) {
       "Of graphs: the nodes' attribute that is their prize; none: each is worth 1 (default: prize or score)")
       ->check(not_empty())
       ->type_name("NAME");
+  command.add_flag("--directed", options.directed, "Of edge lists and TGF, which do not say it: edges lead one way")
+      ->group("Options for maps");
   command
       .add_option_function<std::string>(
           "--connectivity", [&options](const std::string& count) { options.diagonals = count == "8"; },
@@ -176,6 +210,7 @@ void print_diagnostic(const std::string& text) {
 
 void print_text(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    if (errno == EPIPE) throw CLI::RuntimeError(kExitClosedPipe);
     throw Error({.what = "cannot write to standard output"});
   }
 }

@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitOurFault = 1;
 inline constexpr int kExitBadInput = 2;
+inline constexpr int kExitClosedPipe = 141;  // as a shell says of a program that SIGPIPE ended
 
 // Parses the arguments, which runs the chosen command's callback. Turns any exception into one line on standard error
 // and an exit status.
@@ -44,7 +45,8 @@ void print_json(const Json& json);
 // Text on standard error; lost if that is closed.
 void print_diagnostic(const std::string& text);
 
-// Text on standard output. Throws Error if it cannot be written (a closed pipe, a full disk).
+// Text on standard output. Throws Error if it cannot be written, as on a full disk. If its reader is gone, throws
+// CLI::RuntimeError, which ends the program with kExitClosedPipe and no word.
 void print_text(const std::string& text);
 
 // A value or null.

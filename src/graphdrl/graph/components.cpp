@@ -49,8 +49,14 @@ int Components::largest() const {
 
 Components find_components(const Graph& graph, const std::vector<bool>& blocked) {
   NodeSets sets(blocked.size());
+  NodeId last = kNoNode;
   for (NodeId node = 0; node < graph.node_count(); ++node) {
     if (blocked[node]) continue;
+    if (graph.is_complete()) {
+      if (last != kNoNode) sets.unite(last, node);
+      last = node;
+      continue;
+    }
     for (const NodeId next : graph.neighbours(node)) {
       if (!blocked[next] && (graph.directed() || node < next)) sets.unite(node, next);
     }

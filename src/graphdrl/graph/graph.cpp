@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/parallel.h"
 #include "graphdrl/graph/grid_map.h"
 
 namespace graphdrl {
@@ -146,7 +147,8 @@ Graph Graph::grid(const GridMap& map) {
   return graph;
 }
 
-Graph Graph::complete(NodeId node_count, std::shared_ptr<const PairCosts> costs) {
+Graph Graph::complete(NodeId node_count, std::shared_ptr<const PairCosts> costs,
+                      const std::function<void(double share)>& progress) {
   Graph graph;
   graph.offsets_.resize(static_cast<std::size_t>(node_count) + 1);
   std::iota(graph.offsets_.begin(), graph.offsets_.end(), std::int64_t{1});
@@ -156,23 +158,43 @@ Graph Graph::complete(NodeId node_count, std::shared_ptr<const PairCosts> costs)
   }
   graph.overlap_ = node_count - 2;
   graph.pair_costs_ = std::move(costs);
-  double sum = 0;
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0;
-  for (NodeId node = 0; node < node_count; ++node) {
+  if (node_count < 2) return graph;
+  // What is known of the costs from each node to those after it. Sums run in the order of the nodes.
+  struct Row {
+    double sum = 0;
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0;
+    bool integers = true;
+  };
+  std::vector<Row> rows(node_count);
+  const auto fill = [&](NodeId node) {
+    Row row;
     for (NodeId other = node + 1; other < node_count; ++other) {
       const double cost = graph.pair_costs_->cost(node, other);
-      sum += cost;
-      least = std::min(least, cost);
-      most = std::max(most, cost);
-      graph.integer_costs_ = graph.integer_costs_ && cost == std::floor(cost);
+      row.sum += cost;
+      row.least = std::min(row.least, cost);
+      row.most = std::max(row.most, cost);
+      row.integers = row.integers && cost == std::floor(cost);
     }
+    rows[node] = row;
+  };
+  constexpr NodeId kBatch = 256;  // of rows, after which progress is told
+  for (NodeId begin = 0; begin < node_count; begin += kBatch) {
+    parallel_for(std::min(kBatch, node_count - begin), [&](int i) { fill(begin + i); });
+    const double left = 1 - static_cast<double>(std::min(begin + kBatch, node_count)) / node_count;
+    if (progress) progress(1 - left * left);
   }
-  if (node_count < 2) return graph;
-  graph.min_cost_ = least;
-  graph.max_cost_ = most;
-  graph.mean_cost_ = sum > 0 ? sum / static_cast<double>(graph.edge_count()) : 1;
-  graph.integer_costs_ = graph.integer_costs_ && 2 * sum < kExactIntegers;
+  Row all;
+  for (const Row& row : rows) {
+    all.sum += row.sum;
+    all.least = std::min(all.least, row.least);
+    all.most = std::max(all.most, row.most);
+    all.integers = all.integers && row.integers;
+  }
+  graph.min_cost_ = all.least;
+  graph.max_cost_ = all.most;
+  graph.mean_cost_ = all.sum > 0 ? all.sum / static_cast<double>(graph.edge_count()) : 1;
+  graph.integer_costs_ = all.integers && 2 * all.sum < kExactIntegers;
   return graph;
 }
 

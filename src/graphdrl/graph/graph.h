@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <span>
@@ -44,7 +45,9 @@ class Graph {
   // An undirected edge between any two nodes. A node's neighbours are in ascending order: first those after the node,
   // then those before it. Memory: O(nodes), and what the costs need. Cost: a look at every pair. If costs are not
   // metric, a way through other nodes may be cheaper than the straight one [NearestFirst::run_cheapest()].
-  static Graph complete(NodeId node_count, std::shared_ptr<const PairCosts> costs);
+  // progress: told how much is done, 0 to 1.
+  static Graph complete(NodeId node_count, std::shared_ptr<const PairCosts> costs,
+                        const std::function<void(double share)>& progress = {});
   bool is_complete() const { return pair_costs_ != nullptr; }
   // Whether straight edges are the cheapest ways in a complete graph; true of other graphs.
   bool straight_ways_suffice() const { return !is_complete() || pair_costs_->metric(); }

@@ -13,9 +13,15 @@ bool is_comment(std::string_view line) {
 }
 
 char separator_of(std::string_view line) {
-  for (const char separator : {',', ';', '\t'}) {
-    // A dictionary of networkx has commas of its own.
-    if (line.substr(0, line.find('{')).find(separator) != std::string_view::npos) return separator;
+  std::string plain;  // without what is in quotes; a dictionary of networkx has commas of its own
+  bool quoted = false;
+  for (const char c : line.substr(0, line.find('{'))) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted) plain += c;
+  }
+  // A comma may be one of a number's, where something else parts the fields.
+  for (const char separator : {'\t', ';', ','}) {
+    if (plain.find(separator) != std::string::npos) return separator;
   }
   return ' ';
 }

@@ -13,8 +13,8 @@ inline constexpr int kNoColumn = -1;
 // Empty, or beginning with '#' or '%'.
 bool is_comment(std::string_view line);
 
-// What parts the fields of a line: a comma, a semicolon or a tab where it has one, else a space, which stands for any
-// number of them.
+// What parts the fields of a line: a tab, a semicolon or a comma where it has one outside of "quotes", else a space,
+// which stands for any number of them.
 char separator_of(std::string_view line);
 
 // The fields of a line, "quotes" taken off [RFC 4180]. From '{' on all is one field, a dictionary of Python. A quote

@@ -9,18 +9,23 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/ascii_map.h"
+#include "graphdrl/io/cell_table.h"
+#include "graphdrl/io/chao.h"
 #include "graphdrl/io/dimacs.h"
 #include "graphdrl/io/dot.h"
 #include "graphdrl/io/edge_list.h"
+#include "graphdrl/io/foreign.h"
 #include "graphdrl/io/gexf.h"
 #include "graphdrl/io/gml.h"
 #include "graphdrl/io/graph_walker.h"
 #include "graphdrl/io/graphml.h"
+#include "graphdrl/io/metis.h"
 #include "graphdrl/io/moving_ai.h"
 #include "graphdrl/io/numpy_map.h"
 #include "graphdrl/io/pajek.h"
 #include "graphdrl/io/picture.h"
 #include "graphdrl/io/ros_map.h"
+#include "graphdrl/io/tgf.h"
 #include "graphdrl/io/tsplib.h"
 
 namespace graphdrl {
@@ -35,6 +40,16 @@ bool is_any(std::string_view /*text*/) {
   return true;
 }
 
+bool is_own_edge_list(std::string_view text) {
+  return is_edge_list(text) && !is_foreign(text);
+}
+
+GridMap parse_drawing(std::string_view text, const std::string& source) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin != std::string_view::npos && text[begin] != '.' && text[begin] != '#') refuse_foreign(text, source);
+  return parse_ascii_map(text, source);
+}
+
 template <auto kParse>
 AnyMap read(std::string_view text, const std::string& source, const MapOptions& options) {
   if constexpr (std::is_invocable_v<decltype(kParse), std::string_view, const std::string&, const MapOptions&>) {
@@ -45,6 +60,12 @@ AnyMap read(std::string_view text, const std::string& source, const MapOptions& 
 }
 
 constexpr std::array kFormats = {
+    MapFormat{.name = "ros",
+              .ending = ".yaml",
+              .purpose = "occupancy grids of robots: map_server's YAML and picture",
+              .recognise = is_ros_map,
+              .read = read<parse_ros_map>,
+              .takes_unknown = true},
     MapFormat{.name = "graph-walker",
               .ending = ".json",
               .purpose = "GraphWalker's models, from which tests are made",
@@ -99,12 +120,6 @@ constexpr std::array kFormats = {
               .recognise = is_moving_ai,
               .read = read<parse_moving_ai>,
               .write_grid = format_moving_ai},
-    MapFormat{.name = "ros",
-              .ending = ".yaml",
-              .purpose = "occupancy grids of robots: map_server's YAML and picture",
-              .recognise = is_ros_map,
-              .read = read<parse_ros_map>,
-              .takes_unknown = true},
     MapFormat{.name = "dot",
               .ending = ".dot",
               .purpose = "any graph in Graphviz's language",
@@ -136,17 +151,39 @@ constexpr std::array kFormats = {
               .purpose = "graphs of DIMACS' challenges: p edge, p col, p sp",
               .recognise = is_dimacs,
               .read = read<parse_dimacs>},
+    MapFormat{.name = "chao",
+              .ending = ".txt",
+              .purpose = "orienteering problems of Chao, Golden and Wasil, for a team of one",
+              .recognise = is_chao,
+              .read = read<parse_chao>},
+    MapFormat{.name = "tgf",
+              .ending = ".tgf",
+              .purpose = "nodes, a line '#', and edges: the Trivial Graph Format",
+              .recognise = is_tgf,
+              .read = read<parse_tgf>,
+              .takes_directed = true},
+    MapFormat{.name = "cell-table",
+              .ending = ".csv",
+              .purpose = "a grid as rows of 0 (free) and 1 (blocked)",
+              .recognise = is_cell_table,
+              .read = read<parse_cell_table>},
+    MapFormat{.name = "metis",
+              .ending = ".graph",
+              .purpose = "graphs of METIS and KaHIP: a line of neighbours for each node",
+              .recognise = is_metis,
+              .read = read<parse_metis>},
     MapFormat{.name = "edge-list",
               .ending = ".csv",
               .purpose = "two nodes and a cost a line: CSV, networkx, igraph, SNAP",
-              .recognise = is_edge_list,
+              .recognise = is_own_edge_list,
               .read = read<parse_edge_list>,
-              .takes_cost_attribute = true},
+              .takes_cost_attribute = true,
+              .takes_directed = true},
     MapFormat{.name = "ascii",
               .ending = ".txt",
               .purpose = "a grid drawn with '.' (free) and '#' (blocked)",
               .recognise = is_any,
-              .read = read<parse_ascii_map>,
+              .read = read<parse_drawing>,
               .write_grid = format_ascii_map},
 };
 

@@ -28,6 +28,7 @@ struct MapFormat {
   bool takes_prize_attribute = false;
   bool takes_cell_pixels = false;
   bool takes_unknown = false;
+  bool takes_directed = false;
 };
 
 // In the order in which they are tried.

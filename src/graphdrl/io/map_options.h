@@ -14,6 +14,7 @@ inline constexpr std::string_view kNoAttribute = "none";
 struct MapOptions {
   std::string cost_attribute = {};   // the edges' attribute that is their cost; empty: the first of cost_names()
   std::string prize_attribute = {};  // the nodes' attribute that is their prize; empty: the first of prize_names()
+  bool directed = false;             // of formats that do not say: edges lead one way
 
   // Of grids.
   int cell_pixels = 1;                   // of pictures: pixels a side of a cell
@@ -25,6 +26,8 @@ struct MapOptions {
 
   // Is told in one line what a user should know, as what was lost by larger cells.
   std::function<void(const std::string&)> note = {};
+  // Is told now and then how much of long work is done, 0 to 1; 1 at its end.
+  std::function<void(double share)> progress = {};
 };
 
 }  // namespace graphdrl

@@ -70,6 +70,9 @@ void check_options(const MapFormat& format, const MapOptions& options, const std
   if (!options.prize_attribute.empty() && !format.takes_prize_attribute) {
     refuse_option("--prize-attribute", "graphs whose nodes have attributes", source);
   }
+  if (options.directed && !format.takes_directed) {
+    refuse_option("--directed", "edge lists and TGF: other formats say it themselves", source);
+  }
   if (options.cell_pixels != 1 && !format.takes_cell_pixels) refuse_option("--cell-pixels", "pictures", source);
   if (options.unknown_is_free && !format.takes_unknown) refuse_option("--unknown", "ROS maps", source);
 }

@@ -12,7 +12,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::string_view kFreeCells = ".GS";
+constexpr std::string_view kFreeCells = ".GSE";
 constexpr std::string_view kBlockedCells = "@OTW";
 
 // Reads the header, to the line `map`.
@@ -84,7 +84,7 @@ GridMap parse_moving_ai(std::string_view text, const std::string& source) {
       const bool blocked = kBlockedCells.find(c) != std::string_view::npos;
       if (!blocked && kFreeCells.find(c) == std::string_view::npos) {
         throw Error({.what = "strange character in the map",
-                     .expected = "one of .GS (free) or @OTW (blocked)",
+                     .expected = "one of .GSE (free) or @OTW (blocked)",
                      .got = in_quotes({&c, 1}),
                      .where = fmt::format("{}:{}:{}", source, lines.number(), &c - line.data() + 1)});
       }

@@ -29,7 +29,7 @@ class NetpbmReader {
  public:
   NetpbmReader(std::string_view bytes, const std::string& source) : bytes_(bytes), source_(source) {}
 
-  GreyPicture read() {
+  Raster read() {
     const char kind = bytes_[1];
     const bool plain = kind <= '3';
     const bool bits = kind == '1' || kind == '4';
@@ -40,7 +40,8 @@ class NetpbmReader {
     check_size(static_cast<std::int64_t>(width), static_cast<std::int64_t>(height), source_);
     most_ = bits ? 1 : number(65535);
     if (most_ == 0) fail("a maximum of 0", "1 to 65535");
-    GreyPicture picture{.width = static_cast<int>(width), .height = static_cast<int>(height), .pixels = {}};
+    Raster picture{
+        .width = static_cast<int>(width), .height = static_cast<int>(height), .channels = channels, .samples = {}};
     const std::int64_t samples = std::int64_t{picture.width} * picture.height * channels;
     if (!plain) ++at_;  // one white space
     const std::int64_t row_bytes =
@@ -48,16 +49,16 @@ class NetpbmReader {
     const std::int64_t needed = plain ? samples : row_bytes * picture.height;
     if (std::ssize(bytes_) - static_cast<std::int64_t>(at_) < needed)
       fail("the file ends within the picture", "more bytes");
-    picture.pixels.reserve(static_cast<std::size_t>(picture.width) * picture.height);
+    picture.samples.reserve(static_cast<std::size_t>(samples));
     for (int row = 0; row < picture.height; ++row) {
-      for (int col = 0; col < picture.width; ++col) {
+      for (int col = 0; col < picture.width * channels; ++col) {
         if (bits && !plain) {
           const auto byte = static_cast<unsigned char>(bytes_[at_ + col / 8]);
-          picture.pixels.push_back((byte >> (7 - col % 8)) & 1 ? 0 : kWhite);
+          picture.samples.push_back((byte >> (7 - col % 8)) & 1 ? 0 : kWhite);
           continue;
         }
-        const double value = channels == 1 ? sample(plain, bits) : brightness(plain);
-        picture.pixels.push_back(static_cast<std::uint8_t>(std::lround(kWhite * (bits ? 1 - value : value / most_))));
+        const double value = sample(plain, bits);
+        picture.samples.push_back(static_cast<std::uint8_t>(std::lround(kWhite * (bits ? 1 - value : value / most_))));
       }
       if (bits && !plain) at_ += row_bytes;
     }
@@ -101,20 +102,51 @@ class NetpbmReader {
     return bytes_[at_++] - '0';
   }
 
-  // Of a colour [ITU-R BT.709].
-  double brightness(bool plain) {
-    const double red = sample(plain, false);
-    const double green = sample(plain, false);
-    return 0.2126 * red + 0.7152 * green + 0.0722 * sample(plain, false);
-  }
-
   std::string_view bytes_;
   const std::string& source_;
   std::size_t at_ = 0;
   double most_ = 1;
 };
 
-GridMap grid_of(const GreyPicture& picture, int cell_pixels, const std::string& source) {
+// Of 8 bits a sample. grey: colours as their brightness, transparent pixels as white.
+Raster read_png(std::string_view bytes, const std::string& source, bool grey) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  const auto fail = [&] {
+    const std::string complaint = image.message;
+    png_image_free(&image);
+    throw Error({.what = fmt::format("a PNG file that cannot be read ({})", escaped(complaint)), .where = source});
+  };
+  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) fail();
+  const std::int64_t width = image.width;
+  const std::int64_t height = image.height;
+  if (width > kMostPixels / height) png_image_free(&image);
+  check_size(width, height, source);
+  image.format = grey ? PNG_FORMAT_GRAY : image.format & (PNG_FORMAT_FLAG_COLOR | PNG_FORMAT_FLAG_ALPHA);
+  if (!grey) image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // samples as they are, not as light
+  const auto channels = static_cast<int>(PNG_IMAGE_SAMPLE_CHANNELS(image.format));
+  Raster picture{
+      .width = static_cast<int>(width), .height = static_cast<int>(height), .channels = channels, .samples = {}};
+  picture.samples.resize(static_cast<std::size_t>(width) * height * channels);
+  const png_color white = {kWhite, kWhite, kWhite};
+  if (png_image_finish_read(&image, &white, picture.samples.data(), 0, nullptr) == 0) fail();
+  return picture;
+}
+
+// Colours as their brightness [ITU-R BT.709].
+Raster grey_of(Raster picture) {
+  if (picture.channels == 1) return picture;
+  std::vector<std::uint8_t> grey;
+  grey.reserve(picture.samples.size() / 3);
+  for (std::size_t at = 0; at < picture.samples.size(); at += 3) {
+    const std::uint8_t* const colour = &picture.samples[at];
+    grey.push_back(
+        static_cast<std::uint8_t>(std::lround(0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2])));
+  }
+  return {.width = picture.width, .height = picture.height, .channels = 1, .samples = std::move(grey)};
+}
+
+GridMap grid_of(const Raster& picture, int cell_pixels, const std::string& source) {
   GridMap map{.rows = picture.height / cell_pixels, .cols = picture.width / cell_pixels, .blocked = {}};
   if (map.rows == 0 || map.cols == 0) {
     throw Error({.what = "the picture is smaller than a cell",
@@ -125,7 +157,7 @@ GridMap grid_of(const GreyPicture& picture, int cell_pixels, const std::string& 
   map.blocked.resize(static_cast<std::size_t>(map.rows) * map.cols);
   for (int y = 0; y < map.rows * cell_pixels; ++y) {
     for (int x = 0; x < map.cols * cell_pixels; ++x) {
-      if (picture.pixels[static_cast<std::size_t>(y) * picture.width + x] >= kHalf) continue;
+      if (picture.samples[static_cast<std::size_t>(y) * picture.width + x] >= kHalf) continue;
       map.blocked[map.node({y / cell_pixels, x / cell_pixels})] = true;
     }
   }
@@ -165,43 +197,18 @@ bool is_netpbm(std::string_view bytes) {
   return numbers >= 3;
 }
 
-GreyPicture read_png(std::string_view bytes, const std::string& source) {
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  const auto fail = [&] {
-    const std::string complaint = image.message;
-    png_image_free(&image);
-    throw Error({.what = fmt::format("a PNG file that cannot be read ({})", escaped(complaint)), .where = source});
-  };
-  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) fail();
-  const std::int64_t width = image.width;
-  const std::int64_t height = image.height;
-  if (width > kMostPixels / height) png_image_free(&image);
-  check_size(width, height, source);
-  image.format = PNG_FORMAT_GRAY;
-  GreyPicture picture{.width = static_cast<int>(width), .height = static_cast<int>(height), .pixels = {}};
-  picture.pixels.resize(static_cast<std::size_t>(width) * height);
-  const png_color white = {kWhite, kWhite, kWhite};
-  if (png_image_finish_read(&image, &white, picture.pixels.data(), 0, nullptr) == 0) fail();
-  return picture;
-}
-
-GreyPicture read_netpbm(std::string_view bytes, const std::string& source) {
-  return NetpbmReader(bytes, source).read();
-}
-
-GreyPicture read_picture(std::string_view bytes, const std::string& source) {
-  if (is_png(bytes)) return read_png(bytes, source);
-  if (is_netpbm(bytes)) return read_netpbm(bytes, source);
+Raster read_picture(std::string_view bytes, const std::string& source) {
+  if (is_png(bytes)) return read_png(bytes, source, /*grey=*/false);
+  if (is_netpbm(bytes)) return NetpbmReader(bytes, source).read();
   throw Error({.what = "not a picture", .expected = "PNG, PGM, PBM or PPM", .where = source});
 }
 
 GridMap parse_png_map(std::string_view bytes, const std::string& source, const MapOptions& options) {
-  return grid_of(read_png(bytes, source), options.cell_pixels, source);
+  return grid_of(read_png(bytes, source, /*grey=*/true), options.cell_pixels, source);
 }
 
 GridMap parse_netpbm_map(std::string_view bytes, const std::string& source, const MapOptions& options) {
-  return grid_of(read_netpbm(bytes, source), options.cell_pixels, source);
+  return grid_of(grey_of(NetpbmReader(bytes, source).read()), options.cell_pixels, source);
 }
 
 std::string format_png_map(const GridMap& map) {

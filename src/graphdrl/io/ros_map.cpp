@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <span>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/picture.h"
 #include "graphdrl/io/text.h"
 
@@ -21,12 +23,35 @@ constexpr int kMostRawOccupancy = 100;
 
 enum class Mode { kTrinary, kScale, kRaw };
 
+struct Pixel {
+  double level;  // 0 black to 255 white
+  bool transparent;
+};
+
+// As map_server counts it: the mean of red, green and blue, and of alpha too in trinary mode.
+Pixel pixel_of(std::span<const std::uint8_t> samples, Mode mode) {
+  const bool alpha = samples.size() % 2 == 0;
+  const bool colour = samples.size() >= 3;
+  double sum = colour ? samples[0] + samples[1] + samples[2] : 3 * samples[0];
+  double count = 3;
+  if (alpha && mode == Mode::kTrinary) {
+    sum += samples.back();
+    ++count;
+  }
+  return {.level = sum / count, .transparent = alpha && samples.back() < 255};
+}
+
+// The keys and values of a file; throws YAML::Exception.
+YAML::Node parse_yaml(std::string_view text) {
+  return YAML::Load(std::string(text));
+}
+
 class RosMapReader {
  public:
   RosMapReader(std::string_view text, const std::string& source, const MapOptions& options)
       : source_(source), options_(options) {
     try {
-      document_ = YAML::Load(std::string(text));
+      document_ = parse_yaml(text);
     } catch (const YAML::Exception& complaint) {
       throw Error({.what = fmt::format("YAML that cannot be read ({})", escaped(complaint.msg)),
                    .where = fmt::format("{}:{}", source_, complaint.mark.line + 1)});
@@ -44,15 +69,18 @@ class RosMapReader {
     if (free > occupied) fail("free_thresh", "free_thresh is above occupied_thresh", "at most occupied_thresh");
     const Mode mode = read_mode();
     const std::filesystem::path path = picture_path();
-    const GreyPicture picture = read_picture(read_file(path), path.string());
+    const Raster picture = read_picture(read_file(path), path.string());
 
     GridMap map{.rows = picture.height, .cols = picture.width, .blocked = {}, .frame = frame};
-    map.blocked.reserve(picture.pixels.size());
-    for (const std::uint8_t pixel : picture.pixels) {
-      const double shade = pixel / 255.0;
-      const double occupancy = mode == Mode::kRaw ? pixel / double{kMostRawOccupancy} : negate ? shade : 1 - shade;
-      const bool unknown =
-          (occupancy >= free && occupancy <= occupied) || (mode == Mode::kRaw && pixel > kMostRawOccupancy);
+    map.blocked.reserve(picture.samples.size() / picture.channels);
+    for (std::size_t at = 0; at < picture.samples.size(); at += picture.channels) {
+      const Pixel pixel = pixel_of({&picture.samples[at], static_cast<std::size_t>(picture.channels)}, mode);
+      const double shade = pixel.level / 255.0;
+      const double occupancy = mode == Mode::kRaw ? std::round(pixel.level) / kMostRawOccupancy
+                               : negate           ? shade
+                                                  : 1 - shade;
+      const bool unknown = (occupancy >= free && occupancy <= occupied) || (mode == Mode::kRaw && occupancy > 1) ||
+                           (mode == Mode::kScale && pixel.transparent);
       map.blocked.push_back(unknown ? !options_.unknown_is_free : occupancy > occupied);
     }
     if (std::find(map.blocked.begin(), map.blocked.end(), false) == map.blocked.end()) {
@@ -84,10 +112,12 @@ class RosMapReader {
   bool flag(const std::string& key) const {
     const YAML::Node node = document_[key];
     if (!node.IsDefined()) return false;
-    const std::string value = node.IsScalar() ? node.Scalar() : "";
-    const bool yes = value == "1" || value == "true";
-    if (!yes && value != "0" && value != "false") fail(key, fmt::format("bad {}", key), "0 or 1");
-    return yes;
+    bool yes = false;  // of YAML's words: true, yes, on
+    const auto value = node.IsScalar() ? parse_number(node.Scalar()) : std::nullopt;
+    if (value ? *value != 0 && *value != 1 : !YAML::convert<bool>::decode(node, yes)) {
+      fail(key, fmt::format("bad {}", key), "0 or 1");
+    }
+    return value ? *value == 1 : yes;
   }
 
   void read_origin(GridFrame& frame) const {
@@ -109,25 +139,37 @@ class RosMapReader {
     const YAML::Node node = document_["mode"];
     if (!node.IsDefined()) return Mode::kTrinary;
     const std::string value = node.IsScalar() ? node.Scalar() : "";
-    if (value == "trinary") return Mode::kTrinary;
-    if (value == "scale") return Mode::kScale;
-    if (value == "raw") return Mode::kRaw;
+    if (same_name(value, "trinary")) return Mode::kTrinary;
+    if (same_name(value, "scale")) return Mode::kScale;
+    if (same_name(value, "raw")) return Mode::kRaw;
     fail("mode", "bad mode", "trinary, scale or raw");
   }
 
-  // The picture lies in the folder of the YAML file, or below it.
+  // The picture lies in the folder of the YAML file, or below it. An absolute path may be that of another machine: then
+  // the file of this name beside the YAML file.
   std::filesystem::path picture_path() const {
     const YAML::Node node = document_["image"];
     if (!node.IsDefined() || !node.IsScalar() || node.Scalar().empty()) fail("image", "no picture", "image: FILE");
     const std::filesystem::path folder = std::filesystem::path(source_).parent_path();
+    const std::string& image = node.Scalar();
+    const std::string name = image.substr(image.find_last_of("/\\") + 1);
+    const bool windows = image.size() > 2 && image[1] == ':' && (image[2] == '\\' || image[2] == '/');
+    if (!windows && lies_in(folder, image)) return folder / image;
+    std::error_code error;
+    if ((windows || image.starts_with('/')) && !name.empty() && std::filesystem::exists(folder / name, error) &&
+        lies_in(folder, name)) {
+      if (options_.note) options_.note(fmt::format("{}: {} beside it is read, not {}", source_, name, image));
+      return folder / name;
+    }
+    fail("image", "the picture lies outside of the folder", "a file beside this one: copy it, and name it alone");
+  }
+
+  static bool lies_in(const std::filesystem::path& folder, const std::filesystem::path& image) {
     std::error_code error;
     const std::filesystem::path real_folder = std::filesystem::weakly_canonical(folder.empty() ? "." : folder, error);
-    const std::filesystem::path real = std::filesystem::weakly_canonical(folder / node.Scalar(), error);
+    const std::filesystem::path real = std::filesystem::weakly_canonical(folder / image, error);
     const auto [end, rest] = std::mismatch(real_folder.begin(), real_folder.end(), real.begin(), real.end());
-    if (error || std::filesystem::path(node.Scalar()).is_absolute() || end != real_folder.end()) {
-      fail("image", "the picture lies outside of the folder", "a file beside this one: copy it, and name it alone");
-    }
-    return folder / node.Scalar();
+    return !error && end == real_folder.end();
   }
 
   const std::string& source_;
@@ -138,14 +180,23 @@ class RosMapReader {
 }  // namespace
 
 bool is_ros_map(std::string_view text) {
-  constexpr std::size_t kLooked = 4096;
-  bool image = false;
-  bool resolution = false;
-  for (Lines lines(text.substr(0, kLooked)); lines.next();) {
-    image = image || lines.line().starts_with("image:");
-    resolution = resolution || lines.line().starts_with("resolution:");
+  constexpr std::size_t kLargest = 65536;  // bytes: parsing is slow, and such files are small
+  for (const char* const key : {"image", "resolution"}) {
+    if (text.substr(0, kLargest).find(key) == std::string_view::npos) return false;
   }
-  return image && resolution;
+  try {
+    const YAML::Node document = parse_yaml(text.substr(0, kLargest));
+    return document.IsMap() && document["image"].IsDefined() && document["resolution"].IsDefined();
+  } catch (const YAML::Exception&) {
+    // A damaged one: its reader says where.
+    bool image = false;
+    bool resolution = false;
+    for (Lines lines(text.substr(0, kLargest)); lines.next();) {
+      image = image || lines.line().starts_with("image:");
+      resolution = resolution || lines.line().starts_with("resolution:");
+    }
+    return image && resolution;
+  }
 }
 
 GridMap parse_ros_map(std::string_view text, const std::string& source, const MapOptions& options) {

@@ -95,10 +95,18 @@ class MatrixCosts final : public PairCosts {
 
 class TsplibReader {
  public:
-  TsplibReader(std::string_view text, const std::string& source) : text_(text), source_(source) {}
+  TsplibReader(std::string_view text, const std::string& source, const MapOptions& options)
+      : text_(text), source_(source), options_(options) {}
 
   GraphMap read() {
     while (skip_space() && read_entry()) {
+    }
+    if (nodes_ == 0) fail("DIMENSION is missing");
+    for (const Section& section : sections_) {
+      at_ = section.begin;
+      read_section(section.name);
+      skip_space();
+      if (at_ < section.end) fail_here("an unknown keyword", in_quotes(word(" \t\r\n:")));
     }
     return build();
   }
@@ -125,9 +133,10 @@ class TsplibReader {
     at_ = end;
     return found;
   }
+  std::size_t line_end() const { return std::min(text_.find('\n', at_), text_.size()); }
   // What stands after a keyword and its colon, to the end of the line.
   std::string_view value_of_line() {
-    const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+    const std::size_t end = line_end();
     std::string_view line = text_.substr(at_, end - at_);
     at_ = end;
     line.remove_prefix(std::min(line.find_first_not_of(" \t:"), line.size()));
@@ -165,13 +174,14 @@ class TsplibReader {
     if (keyword == "EOF") return false;
     if (keyword.ends_with("_SECTION")) {
       value_of_line();
-      if (nodes_ == 0) fail_here(fmt::format("{} comes before DIMENSION", keyword));
       if (!header_.try_emplace(keyword).second) fail_here(fmt::format("{} comes twice", keyword));
-      read_section(keyword);
+      skip_section(keyword);
       return true;
     }
     if (!is_keyword(keyword)) fail_here("an unknown keyword", in_quotes(keyword));
-    const std::string_view value = value_of_line();
+    std::string_view value = value_of_line();
+    // Some files go on with a comment, as `TYPE : TSP (M.~Hofmeister)`.
+    if (keyword == "TYPE" || keyword.starts_with("EDGE_WEIGHT_")) value = value.substr(0, value.find_first_of(kSpace));
     if (!header_.try_emplace(keyword, value).second && keyword != "COMMENT")
       fail_here(fmt::format("{} comes twice", keyword));
     if (keyword == "DIMENSION") {
@@ -186,6 +196,19 @@ class TsplibReader {
       task_.budget = limit;
     }
     return true;
+  }
+
+  // Goes to the next keyword. Sections are read when all of the header is known, in whatever order they stand.
+  void skip_section(const std::string& name) {
+    sections_.push_back({name, at_, text_.size()});
+    while (skip_space()) {
+      const std::size_t begin = at_;
+      const std::string_view first = word(" \t\r\n:");
+      at_ = begin;
+      if (first == "EOF" || first.ends_with("_SECTION") || is_keyword(first)) break;
+      at_ = line_end();
+    }
+    sections_.back().end = at_;
   }
 
   void read_section(const std::string& name) {
@@ -249,14 +272,13 @@ class TsplibReader {
   GraphMap build() {
     const std::string& type = header_["TYPE"];
     if (type != "OP" && type != "TSP") fail("bad TYPE: OP or TSP", in_quotes(type));
-    if (nodes_ == 0) fail("DIMENSION is missing");
     if (type == "OP") {
       for (const char* const needed : {"COST_LIMIT", "NODE_SCORE_SECTION", "DEPOT_SECTION"}) {
         if (!header_.contains(needed)) fail(fmt::format("{} is missing", needed));
       }
       if (task_.start == kNoNode) fail("DEPOT_SECTION names no depot");
     }
-    GraphMap map{.graph = Graph::complete(nodes_, pair_costs()),
+    GraphMap map{.graph = Graph::complete(nodes_, pair_costs(), options_.progress),
                  .blocked = std::vector<bool>(nodes_),
                  .labels = {},
                  .prizes = std::move(prizes_),
@@ -284,10 +306,18 @@ class TsplibReader {
     return std::make_shared<PlaneCosts>(found->second, std::move(points_));
   }
 
+  struct Section {
+    std::string name;
+    std::size_t begin;  // behind its name
+    std::size_t end;    // of the next keyword
+  };
+
   std::string_view text_;
   const std::string& source_;
+  const MapOptions& options_;
   std::size_t at_ = 0;
   NodeId nodes_ = 0;
+  std::vector<Section> sections_;
   std::map<std::string, std::string> header_;  // and the sections met
   GivenTask task_;
   std::vector<Point> points_;  // that costs are computed from
@@ -300,11 +330,12 @@ class TsplibReader {
 
 bool is_tsplib(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-  return is_keyword(text.substr(0, text.find_first_of(" \t\r\n:")));
+  const std::string_view first = text.substr(0, text.find_first_of(" \t\r\n:"));
+  return is_keyword(first) || first.ends_with("_SECTION");
 }
 
-GraphMap parse_tsplib(std::string_view text, const std::string& source) {
-  return TsplibReader(text, source).read();
+GraphMap parse_tsplib(std::string_view text, const std::string& source, const MapOptions& options) {
+  return TsplibReader(text, source, options).read();
 }
 
 }  // namespace graphdrl
