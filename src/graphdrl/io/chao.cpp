@@ -16,7 +16,7 @@ namespace graphdrl {
 namespace {
 
 constexpr double kMostPlaces = 100'000;
-constexpr double kMostNumber = 1e15;
+constexpr double kMostInTeamFile = 1e15;
 
 class Distances final : public PairCosts {
  public:
@@ -98,11 +98,11 @@ class ChaoReader {
     if (same_name(words_[0], "n") && places_ == 0) {
       places_ = whole(kMostPlaces, "number of places");
     } else if (same_name(words_[0], "m") && team_ == 0) {
-      team_ = whole(kMostNumber, "size of the team");
+      team_ = whole(kMostInTeamFile, "size of the team");
       if (team_ > 1)
         fail(fmt::format("teams cannot be planned yet, and this is a problem for a team of {}", team_), "m 1");
     } else if (same_name(words_[0], "tmax") && !limit_) {
-      limit_ = number(1, 0, kMostNumber, "limit");
+      limit_ = number(1, 0, kMostInTeamFile, "limit");
     } else {
       fail("strange line", "n, m and tmax, once each, then x, y and score of each place");
     }
@@ -110,8 +110,9 @@ class ChaoReader {
 
   void read_place() {
     if (words_.size() != 3) fail("not a place", "x, y and score");
-    points_.push_back({number(0, -kMostNumber, kMostNumber, "x"), number(1, -kMostNumber, kMostNumber, "y")});
-    prizes_.push_back(number(2, 0, kMostNumber, "score"));
+    points_.push_back(
+        {number(0, -kMostInTeamFile, kMostInTeamFile, "x"), number(1, -kMostInTeamFile, kMostInTeamFile, "y")});
+    prizes_.push_back(number(2, 0, kMostInTeamFile, "score"));
   }
 
   Lines lines_;

@@ -12,7 +12,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr double kMostNodes = 1e9;
+constexpr double kMostInMetis = 1e9;
 
 // The whole numbers of a line, from 0 up; nothing where it has something else.
 std::optional<std::vector<double>> numbers_of(std::string_view line) {
@@ -62,7 +62,7 @@ class MetisReader {
     const auto header = numbers_of(lines_.line());
     if (!header || header->size() < 2 || header->size() > 4) return false;
     const std::vector<double>& numbers = *header;
-    if (numbers[0] < 1 || numbers[0] > kMostNodes) return false;
+    if (numbers[0] < 1 || numbers[0] > kMostInMetis) return false;
     graph_.nodes = static_cast<NodeId>(numbers[0]);
     edges_ = numbers[1];
     const double format = numbers.size() > 2 ? numbers[2] : 0;  // three digits, 0 or 1: sizes, weights, costs
