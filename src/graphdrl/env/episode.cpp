@@ -7,8 +7,13 @@
 namespace graphdrl {
 
 Episode::Episode(const World& world, const Task& task, const EpisodeOptions& options)
-    : world_(world), options_(options), task_(task), visits_(world.node_count()) {
-  if (options.action_space == ActionSpace::kDirections && !world.is_grid()) {
+    : world_(world),
+      options_(options),
+      task_(task),
+      grid_(options.action_space == ActionSpace::kDirections && world.is_grid() ? &world.view().grid() : nullptr),
+      most_free_moves_(kFreeMovesPerNode * std::int64_t{world.node_count()}),
+      visits_(world.node_count()) {
+  if (options.action_space == ActionSpace::kDirections && grid_ == nullptr) {
     throw Error({.what = "directions need a grid map", .where = world.name()});
   }
   reset(task.start());
@@ -42,10 +47,8 @@ void Episode::reset(NodeId start) {
 }
 
 StepResult Episode::step(int action) {
-  const bool directions = options_.action_space == ActionSpace::kDirections;
-  const NodeId next =
-      directions ? world_.direction_target(position_, action) : world_.open_neighbours(position_)[action];
-  return enter(next, directions ? 1.0 : world_.open().cost(position_, action));
+  if (grid_ != nullptr) return enter(grid_->direction_target(position_, action), 1.0);
+  return enter(world_.open_neighbours(position_)[action], world_.open().cost(position_, action));
 }
 
 bool Episode::can_stay() const {
@@ -84,7 +87,7 @@ double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
 
 bool Episode::done() const {
   if (terminal() || too_long()) return true;
-  if (options_.action_space == ActionSpace::kDirections && task_.ends_anywhere()) return task_.limit() - spent_ < 1;
+  if (grid_ != nullptr && task_.ends_anywhere()) return task_.limit() - spent_ < 1;
   const Observation now = observation();
   for (int action = 0; action < now.action_count(); ++action) {
     if (now.affordable(action)) return false;

@@ -69,7 +69,7 @@ class Episode {
   // The walk has kMaxSteps steps, or goes round for nothing: its last kFreeMovesPerNode · N moves cost nothing and
   // visited nothing new. Only done() heeds this: a walk that is given may be followed farther.
   bool too_long() const {
-    return std::ssize(walk_) > kMaxSteps || free_moves_ >= kFreeMovesPerNode * std::int64_t{world_.node_count()};
+    return std::ssize(walk_) > kMaxSteps || free_moves_ >= most_free_moves_;
   }
 
   // Reached full coverage with end_at_full_coverage: nothing follows. A spent budget is no terminal state, only a
@@ -95,6 +95,8 @@ class Episode {
   World world_;
   EpisodeOptions options_;
   Task task_;
+  const KnownGrid* grid_;  // of directions; else null
+  std::int64_t most_free_moves_;
   NodeId position_ = kNoNode;
   std::vector<std::uint32_t> visits_;  // [N]
   std::vector<NodeId> walk_;
