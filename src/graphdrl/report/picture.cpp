@@ -75,12 +75,7 @@ void Picture::place_cells() {
 }
 
 void Picture::place_nodes() {
-  std::vector<Point> points;
-  if (world_.has_places()) {
-    for (NodeId node = 0; node < world_.node_count(); ++node) points.push_back(world_.place(node));
-  } else {
-    points = lay_out(world_.open());
-  }
+  const std::vector<Point> points = places_of(world_);
   double left = std::numeric_limits<double>::infinity();
   double bottom = left;
   double right = -left;
