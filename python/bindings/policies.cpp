@@ -88,7 +88,7 @@ class Explorer {
     return encode(Exploration(state.get(), ground), scratch_, batch).visits;
   }
 
-  // Nodes, costs, shortfalls, the ceiling, and the place of the one it would make; -1 where there is none.
+  // Nodes, costs, shortfalls, the ceiling, and the index of the one it would make, or -1.
   nb::tuple first_visits(const State& state) {
     ExplorerBatch batch;
     const auto visits = append(state, batch);
