@@ -94,6 +94,15 @@ TEST(ExplorerFeatures, AreWorkedOutByHand) {
   EXPECT_EQ(to_3[feature_column(kExplorerVisitFeatures, "next_cost")], 2.0f / 8);
 }
 
+TEST(ExplorerFeatures, MarkTheTargetOfAFirstVisitThatCostsNothing) {
+  const World world("free", Graph::from_edges(3, std::vector<Edge>{{0, 1, 0}, {1, 2, 1}}), std::vector<bool>(3));
+  ExplorerScratch scratch;
+  ExplorerBatch batch;
+  encode(Walked(world, 0, 9).state(), scratch, batch);
+  ASSERT_EQ(batch.target, std::vector<int>{1});
+  EXPECT_EQ(batch.node_x[kExplorerNodeFeatureCount + feature_column(kExplorerNodeFeatures, "candidate")], 1);
+}
+
 TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   const World world = grid_world(std::string(200, '.') + "\n");
   ExplorerScratch scratch;

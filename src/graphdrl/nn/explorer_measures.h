@@ -27,7 +27,7 @@ struct FirstVisits {
   std::vector<double> cost;     // [H] of the first visit; kNoLimit of nodes without one
   bool left_out = false;        // there may be more
 
-  bool lead_to(int index) const { return cost[index] > 0 && cost[index] < kNoLimit; }
+  bool lead_to(int index) const { return cost[index] < kNoLimit; }
 };
 // Finds all that a scope may hold, and at least kLeastVisits. Stops after kExplorerHorizon searched nodes once it has
 // one.
