@@ -11,7 +11,7 @@ namespace graphdrl {
 namespace {
 
 constexpr double kMostPrize = 8;  // mean prizes
-constexpr double kMostCost = 8;   // mean edges
+constexpr double kFarthest = 8;   // mean edges
 constexpr int kMostUnvisited = 8;
 
 float flag(bool value) {
@@ -61,7 +61,7 @@ void write_action(const Observation& now, const World& world, int action, std::s
   const double cost = now.cost(action) / world.open().mean_cost();
   column(GraphActionFeature::kLegal) = flag(now.legal(action));
   column(GraphActionFeature::kVisited) = flag(now.visited(target));
-  column(GraphActionFeature::kCost) = static_cast<float>(std::min(cost, kMostCost) / kMostCost);
+  column(GraphActionFeature::kCost) = static_cast<float>(std::min(cost, kFarthest) / kFarthest);
   column(GraphActionFeature::kPrize) = prize_of(world, target);
   column(GraphActionFeature::kUnvisitedNeighbours) =
       static_cast<float>(std::min<std::ptrdiff_t>(unvisited, kMostUnvisited)) / kMostUnvisited;
