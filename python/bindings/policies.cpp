@@ -85,10 +85,10 @@ class Explorer {
   // Appends a state to the batch. Gives its first visits until the next call.
   std::span<const FirstVisit> append(const State& state, ExplorerBatch& batch) {
     const NodeSet ground = state.get().ground();
-    return scorer_.encoder().append(Exploration(state.get(), ground), kExplorerScope, batch);
+    return encode(Exploration(state.get(), ground), scratch_, batch).visits;
   }
 
-  // Nodes, costs, shortfalls, the ceiling, and the place of the one it would make; -1 where there is none.
+  // Nodes, costs, shortfalls, the ceiling, and the index of the one it would make, or -1.
   nb::tuple first_visits(const State& state) {
     ExplorerBatch batch;
     const auto visits = append(state, batch);
@@ -124,6 +124,7 @@ class Explorer {
  private:
   SharedExplorer parameters_;
   ExplorerScorer scorer_;
+  ExplorerScratch scratch_;
 };
 
 // The paper's network in Python's hands.

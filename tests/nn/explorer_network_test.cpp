@@ -43,10 +43,10 @@ std::vector<float> scores(const ExplorerParameters& parameters, const ExplorerBa
 }
 
 // Makes first visits drawn at random.
-void wander(Walked& walked, ExplorerEncoder& encoder, int visits, Rng& rng) {
+void wander(Walked& walked, ExplorerScratch& scratch, int visits, Rng& rng) {
   for (; visits > 0; --visits) {
     ExplorerBatch batch;
-    const auto found = encoder.append(walked.state(), kExplorerScope, batch);
+    const auto found = encode(walked.state(), scratch, batch).visits;
     if (found.empty()) return;
     const FirstVisit visit = found[rng.below(static_cast<std::uint32_t>(found.size()))];
     walked.visit(visit.node, visit.cost);
@@ -57,19 +57,18 @@ TEST(ExplorerFeatures, AreWorkedOutByHand) {
   // S . .    From S with 4 steps to spend: its right neighbour and the one below are the first visits.
   // . # .
   const World world = grid_world("...\n.#.\n");
-  ExplorerEncoder encoder;
+  ExplorerScratch scratch;
   const Walked walked(world, 0, 4);
   ExplorerBatch batch;
-  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
+  const auto visits = encode(walked.state(), scratch, batch).visits;
   ASSERT_EQ(visits.size(), 2u);
   EXPECT_EQ(visits[0].node, 1);
   EXPECT_EQ(visits[1].node, 3);
   EXPECT_EQ(batch.graphs.node_count(), 5);
   EXPECT_EQ(batch.ceiling, std::vector<double>{4});
   const auto feature = [&](int row, std::string_view name) {
-    const auto at = std::find(kExplorerNodeFeatures.begin(), kExplorerNodeFeatures.end(), name);
-    return batch
-        .node_x[static_cast<std::size_t>(row * kExplorerNodeFeatureCount + (at - kExplorerNodeFeatures.begin()))];
+    return batch.node_x[static_cast<std::size_t>(row) * kExplorerNodeFeatureCount +
+                        feature_column(kExplorerNodeFeatures, name)];
   };
   const auto count = [](int nodes) { return static_cast<float>(std::log1p(nodes) / 4); };
   // Rows are nodes 0, 1, 2, 3, 5.
@@ -90,23 +89,33 @@ TEST(ExplorerFeatures, AreWorkedOutByHand) {
   EXPECT_EQ(feature(4, "slack"), 0);
   // Of the visit to node 3: nothing unvisited next to it, and two steps back and on to node 1.
   const float* const to_3 = batch.visit_x.data() + kExplorerVisitFeatureCount;
-  EXPECT_EQ(to_3[0], 1.0f / 8);
-  EXPECT_EQ(to_3[1], -4.0f / 4);  // an isolated node less
-  EXPECT_EQ(to_3[3], 2.0f / 8);
+  EXPECT_EQ(to_3[feature_column(kExplorerVisitFeatures, "cost")], 1.0f / 8);
+  EXPECT_EQ(to_3[feature_column(kExplorerVisitFeatures, "change_of_penalties")], -4.0f / 4);  // an isolated node less
+  EXPECT_EQ(to_3[feature_column(kExplorerVisitFeatures, "next_cost")], 2.0f / 8);
+}
+
+TEST(ExplorerFeatures, MarkTheTargetOfAFirstVisitThatCostsNothing) {
+  const World world("free", Graph::from_edges(3, std::vector<Edge>{{0, 1, 0}, {1, 2, 1}}), std::vector<bool>(3));
+  ExplorerScratch scratch;
+  ExplorerBatch batch;
+  encode(Walked(world, 0, 9).state(), scratch, batch);
+  ASSERT_EQ(batch.target, std::vector<int>{1});
+  EXPECT_EQ(batch.node_x[kExplorerNodeFeatureCount + feature_column(kExplorerNodeFeatures, "candidate")], 1);
 }
 
 TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   const World world = grid_world(std::string(200, '.') + "\n");
-  ExplorerEncoder encoder;
+  ExplorerScratch scratch;
   ExplorerBatch batch;
-  encoder.append(Walked(world, 100, 5).state(), kExplorerScope, batch);
+  encode(Walked(world, 100, 5).state(), scratch, batch);
   EXPECT_EQ(batch.graphs.graph(0).node_count(), 11);
-  encoder.append(Walked(world, 100, 500).state(), kExplorerScope, batch);
+  encode(Walked(world, 100, 500).state(), scratch, batch);
   EXPECT_EQ(batch.graphs.graph(1).node_count(), kExplorerScope);
   // Each of its two ends has one neighbour of two out of scope.
   double out_of_scope = 0;
   for (int row = 11; row < batch.graphs.node_count(); ++row) {
-    out_of_scope += batch.node_x[static_cast<std::size_t>(row * kExplorerNodeFeatureCount + 9)];
+    out_of_scope += batch.node_x[static_cast<std::size_t>(row) * kExplorerNodeFeatureCount +
+                                 feature_column(kExplorerNodeFeatures, "out_of_scope")];
   }
   EXPECT_EQ(out_of_scope, 1);
   EXPECT_EQ(batch.visit_x.back(), 95.0f / 199) << "work_in_scope";
@@ -116,18 +125,19 @@ TEST(ExplorerFeatures, LeaveOutWhatCannotBeReachedOrIsFarAway) {
   Walked walked(world, 0, 1000);
   for (NodeId node = 1; node < 150; ++node) walked.visit(node, 1);
   walked.visit(0, 149);
-  const auto visits = encoder.append(walked.state(), kExplorerScope, batch);
+  const auto [visits, left_out] = encode(walked.state(), scratch, batch);
   ASSERT_EQ(visits.size(), 1u);
   EXPECT_EQ(visits[0].node, 150);
-  EXPECT_FALSE(encoder.overlooked());
+  EXPECT_FALSE(left_out);
   EXPECT_EQ(batch.graphs.graph(2).node_count(), 151);
 
   // A star of 200 leaves, all of them first visits: more than the scope holds.
   std::vector<Edge> rays;
   for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf});
   const World star("star", Graph::from_edges(201, rays), std::vector<bool>(201));
-  EXPECT_EQ(encoder.append(Walked(star, 0, 9).state(), kExplorerScope, batch).size(), kExplorerScope - 1u);
-  EXPECT_TRUE(encoder.overlooked());
+  const SeenVisits seen = encode(Walked(star, 0, 9).state(), scratch, batch);
+  EXPECT_EQ(seen.visits.size(), kExplorerScope - 1u);
+  EXPECT_TRUE(seen.left_out);
 }
 
 TEST(ExplorerNetwork, DoesNotDependOnHowNodesAreNumbered) {
@@ -145,10 +155,10 @@ TEST(ExplorerNetwork, DoesNotDependOnHowNodesAreNumbered) {
       for (Edge& edge : edges) edge = {number[edge.a], number[edge.b], edge.cost};
       const EdgeKind kind = directed ? EdgeKind::kDirected : EdgeKind::kUndirected;
       const World renumbered("renumbered", Graph::from_edges(nodes, edges, kind), std::vector<bool>(nodes));
-      ExplorerEncoder encoder;
-      ExplorerEncoder other;
+      ExplorerScratch scratch;
+      ExplorerScratch other;
       Walked walked(world, 0, 0.9 * nodes * world.open().mean_cost());
-      wander(walked, encoder, 8, rng);
+      wander(walked, scratch, 8, rng);
       Walked same(renumbered, number[walked.position], walked.spendable);
       for (NodeId node = 0; node < nodes; ++node) {
         if (walked.visited.contains(node)) same.visit(number[node], 0);
@@ -156,8 +166,8 @@ TEST(ExplorerNetwork, DoesNotDependOnHowNodesAreNumbered) {
       same.position = number[walked.position];
       ExplorerBatch batch;
       ExplorerBatch same_batch;
-      const auto found = encoder.append(walked.state(), kExplorerScope, batch);
-      const auto same_found = other.append(same.state(), kExplorerScope, same_batch);
+      const auto found = encode(walked.state(), scratch, batch).visits;
+      const auto same_found = encode(same.state(), other, same_batch).visits;
       const std::vector<float> score = scores(parameters, batch);
       const std::vector<float> same_score = scores(parameters, same_batch);
       ASSERT_EQ(found.size(), same_found.size());
@@ -183,12 +193,12 @@ struct Sample {
     }
     for (std::size_t i = 0; i < worlds.size(); ++i) {
       Walked walked(worlds[i], worlds[i].valid_nodes()[0], worlds[i].valid_count() * worlds[i].open().mean_cost());
-      wander(walked, encoder, 5, rng);
-      encoder.append(walked.state(), i == 1 ? 12 : kExplorerScope, batch);
+      wander(walked, scratch, 5, rng);
+      encode(walked.state(), scratch, batch, i == 1 ? 12 : kExplorerScope);
     }
   }
   std::vector<World> worlds;
-  ExplorerEncoder encoder;
+  ExplorerScratch scratch;
   ExplorerBatch batch;
 };
 

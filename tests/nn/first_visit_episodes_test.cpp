@@ -69,8 +69,7 @@ TEST(FirstVisitEpisodes, AreGraphsToo) {
   const auto rows = episodes.target_rows(0);
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[2], kNoNode);
-  constexpr int kCandidate = 2;
-  static_assert(kExplorerNodeFeatures[kCandidate] == "candidate");
+  constexpr std::size_t kCandidate = feature_column(kExplorerNodeFeatures, "candidate");
   for (const int action : {0, 1}) {
     EXPECT_EQ(graph.nodes[static_cast<std::size_t>(rows[action]) * kExplorerNodeFeatureCount + kCandidate], 1);
   }

@@ -64,11 +64,12 @@ int check_choices(const World& world) {
   Exploration state(task, ground);
   const double mean_prize = world.total_prize() / world.valid_count();
   ExplorerBatch batch;
+  ExplorerScratch scratch;
   std::vector<float> shortfall;
   int states = 0;
   for (;; ++states) {
     batch.clear();
-    const auto visits = scorer.encoder().append(state, kExplorerScope, batch);
+    const auto visits = encode(state, scratch, batch).visits;
     if (visits.empty()) break;
     scorer.shortfalls(batch, shortfall);
     const auto score = [&](std::size_t v) {

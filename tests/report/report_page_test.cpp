@@ -4,6 +4,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/report/layout.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -47,6 +48,19 @@ TEST(ReportPage, ShowsPlansOfOneWorldTogether) {
   EXPECT_THAT(replays[0]["plans"][0]["walk"], ElementsAre(0, 0, 1, 3));
   EXPECT_EQ(replays[0]["plans"][1]["visited"], 2);
   EXPECT_FALSE(replays[0]["plans"][0].contains("upper_bound")) << "none was given";
+}
+
+TEST(ReportPage, LaysOutWhatHasNoPlacesAsPicturesDo) {
+  const std::vector<Edge> edges = {{0, 1}, {1, 2}, {2, 3}};
+  const World world("path", Graph::from_edges(4, edges), std::vector<bool>(4));
+  ReportPage page("Path");
+  page.add_plan(report_on(world, {0, 1}, 1));
+  const nlohmann::json shown = data_of(page)["replays"][0]["world"];
+  EXPECT_EQ(shown["laid_out"], true);
+  const std::vector<Point> places = lay_out(world.graph());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_EQ((Point{shown["x"][i], shown["y"][i]}), places[i]);
+  }
 }
 
 TEST(ReportPage, KnowsEdgesPlacesAndCosts) {

@@ -19,11 +19,11 @@ TEST(Lessons, OfSmallWorldsAreWorthWhatExactSearchSays) {
   Rng rng(1);
   const ExplorerParameters parameters(rng);
   int checked = 0;
-  ExplorerEncoder encoder;
+  ExplorerScratch scratch;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     for (const Lesson& lesson : draw_lessons(options, parameters, seed)) {
       ExplorerBatch batch;
-      const auto found = lesson.append_to(batch, encoder);
+      const auto found = lesson.append_to(batch, scratch);
       const std::vector<FirstVisit> visits(found.begin(), found.end());
       ASSERT_EQ(visits.size(), lesson.shortfall.size());
       for (std::size_t i = 0; i < visits.size(); ++i) {

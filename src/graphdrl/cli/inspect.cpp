@@ -72,12 +72,13 @@ struct ExplorerStep {
 std::vector<ExplorerStep> inspect_walk(ExplorerScorer& scorer, const World& world, const InspectOptions& options) {
   const double budget = Budget::parse(options.budget).cost_in(world);
   Episode episode(world, {.budget = budget, .action_space = action_space_of(world)});
+  ExplorerScratch scratch;
   std::vector<ExplorerStep> steps;
   follow_walk(episode, options.walk, [&](const Observation& observation) {
     const NodeSet ground = observation.ground();
     steps.push_back({.position = observation.position, .visits = {}, .seen = {}, .shortfall = {}});
     ExplorerStep& step = steps.back();
-    const auto visits = scorer.encoder().append(Exploration(observation, ground), kExplorerScope, step.seen);
+    const auto visits = encode(Exploration(observation, ground), scratch, step.seen).visits;
     step.visits.assign(visits.begin(), visits.end());
     if (visits.empty()) return;
     scorer.shortfalls(step.seen, step.shortfall);
@@ -89,9 +90,9 @@ std::vector<ExplorerStep> inspect_walk(ExplorerScorer& scorer, const World& worl
 Json to_json(const std::vector<ExplorerStep>& steps) {
   Json json = Json::array();
   for (const ExplorerStep& step : steps) {
-    const auto named = [](const float* row, const auto& names) {
+    const auto named = [](const float* row, const auto& features) {
       Json values;
-      for (std::size_t f = 0; f < names.size(); ++f) values[std::string(names[f])] = row[f];
+      for (std::size_t f = 0; f < features.size(); ++f) values[std::string(features[f].name)] = row[f];
       return values;
     };
     Json nodes = Json::array();
@@ -125,13 +126,13 @@ std::string format_steps(const std::vector<ExplorerStep>& steps) {
                                         : fmt::format("at most {:g} more, less the shortfall", step.seen.ceiling[0]));
     if (step.visits.empty()) continue;
     text += "  first visit  shortfall";
-    for (const std::string_view name : kExplorerVisitFeatures) text += fmt::format("  {}", name);
+    for (const ExplorerFeature& feature : kExplorerVisitFeatures) text += fmt::format("  {}", feature.name);
     text += '\n';
     for (std::size_t v = 0; v < step.visits.size(); ++v) {
       text += fmt::format("  {:>10}{}  {:9.3f}", step.visits[v].node, v == step.choice ? "*" : " ", step.shortfall[v]);
       for (int f = 0; f < kExplorerVisitFeatureCount; ++f) {
         text += fmt::format("  {:>{}.3g}", step.seen.visit_x[v * kExplorerVisitFeatureCount + f],
-                            kExplorerVisitFeatures[f].size());
+                            kExplorerVisitFeatures[f].name.size());
       }
       text += '\n';
     }

@@ -39,9 +39,14 @@ const std::vector<TensorSpec>& ExplorerParameters::specs() {
 
 nlohmann::json ExplorerParameters::description() {
   const auto& conv = kExplorerConvShape;
+  const auto names_of = [](const auto& features) {
+    nlohmann::json names;
+    for (const ExplorerFeature& feature : features) names.push_back(feature.name);
+    return names;
+  };
   return {{"kind", "explorer"},
-          {"node_features", kExplorerNodeFeatures},
-          {"visit_features", kExplorerVisitFeatures},
+          {"node_features", names_of(kExplorerNodeFeatures)},
+          {"visit_features", names_of(kExplorerVisitFeatures)},
           {"layers",
            {{{"type", "gated_graph_conv"},
              {"inputs", conv.inputs},

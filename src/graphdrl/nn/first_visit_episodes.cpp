@@ -73,10 +73,10 @@ void FirstVisitEpisodes::show(int index, const Episode& episode) {
   const Observation now = episode.observation();
   memory.seen.clear();
   const Exploration state(now, memory.visited);
-  const auto visits = memory.encoder.append(state, kExplorerScope, memory.seen);
+  const auto [visits, left_out] = encode(state, memory.scratch, memory.seen);
   memory.visits.assign(visits.begin(), visits.end());
-  if (visits.empty() && memory.encoder.overlooked()) {
-    // The nearest, when all are out of the encoder's scope.
+  if (visits.empty() && left_out) {
+    // The nearest, when all are out of scope.
     const FirstVisit far = state.nearest_first_visit(memory.search);
     if (far.node != kNoNode) memory.visits.push_back(far);
   }

@@ -30,7 +30,7 @@ class FirstVisitEpisodes final : public Episodes {
  private:
   struct Memory {
     NodeSet visited;
-    ExplorerEncoder encoder;
+    ExplorerScratch scratch;
     NearestFirst search;
     ExplorerBatch seen;
     std::vector<FirstVisit> visits;

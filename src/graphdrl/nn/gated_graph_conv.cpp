@@ -179,9 +179,9 @@ void GatedGraphConv<T>::weight_products(int step, int gate, int nodes) {
   const int width = shape_.width;
   const int live = live_columns(step);
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(nodes) * width;
-  const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(step) * 3 * width * width;
-  T* const by_folded = folded_grad_.data() + place + gate * width;               // n, r, z
-  T* const by_w_hh = w_hh_grad_.data() + place + std::max(gate - 1, 0) * width;  // r, z, hn
+  const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(step) * 3 * width * width;
+  T* const by_folded = folded_grad_.data() + offset + gate * width;               // n, r, z
+  T* const by_w_hh = w_hh_grad_.data() + offset + std::max(gate - 1, 0) * width;  // r, z, hn
   T* const by_bias = bias_grad_.data() + (static_cast<std::ptrdiff_t>(step) * 4 + gate) * width;
   const bool in_message = gate < 3;
   const bool in_state = gate > 0;

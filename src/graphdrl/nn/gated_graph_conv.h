@@ -50,7 +50,7 @@ class GatedGraphConv {
   void forward(const GraphBatch& batch, const T* x, T* out, bool keep);
 
   // After forward(batch, …, keep = true), once. out, grad_out: [N, D], the output and the loss's derivative by it;
-  // grad_x: [N, F] or null where nobody asks for it; the gradients of the weights are overwritten.
+  // grad_x: [N, F] or null where it is not asked for; the gradients of the weights are overwritten.
   void backward(const GraphBatch& batch, const T* out, const T* grad_out, T* grad_x,
                 const GatedGraphConvTensors<T>& grad);
 

@@ -23,7 +23,7 @@ struct LinearShape {
 // out = x Wᵀ + b.  x: [rows, inputs], out: [rows, outputs].
 void linear(LinearShape shape, int rows, const float* x, const LinearTensors<const float>& weights, float* out);
 
-// grad_out: [rows, outputs]; grad_x: [rows, inputs], or null where nobody asks for it; `grad` is overwritten.
+// grad_out: [rows, outputs]; grad_x: [rows, inputs], or null where it is not asked for; `grad` is overwritten.
 void linear_backward(LinearShape shape, int rows, const float* x, const LinearTensors<const float>& weights,
                      const float* grad_out, float* grad_x, const LinearTensors<float>& grad);
 

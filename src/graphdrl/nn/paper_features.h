@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, kPaperFeatureCount> kPaperFeatureN
 // Which nodes have the feature wall. A network must see it as in its training, so policy files say which.
 enum class PaperWall {
   kBorder,      // the map's first and last rows and columns: the paper's "perimetral wall"
-  kZeroOrNine,  // rows and columns 0 and 9, whatever the map's size: the author's code
+  kZeroOrNine,  // rows and columns 0 and 9, of maps of any size: the author's code
 };
 inline constexpr std::array<std::string_view, 2> kPaperWallNames = {"border", "zero_or_nine"};
 
@@ -50,7 +50,7 @@ class PaperFeatureEncoder {
   void mark_visited(NodeId node, std::span<float> out) const;
 
   View view_;
-  std::vector<float> untouched_;  // [N, F], nothing visited, nobody there
+  std::vector<float> untouched_;  // [N, F], nothing visited, no current node
 };
 
 }  // namespace graphdrl

@@ -34,14 +34,15 @@ void ExplorerScorer::shortfalls(const ExplorerBatch& batch, std::vector<float>& 
 bool ExplorerScorer::score(std::span<const Exploration> states, std::vector<ScoredVisit>& visits) {
   visits.clear();
   batch_.clear();
-  bool overlooked = false;
+  bool left_out = false;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    for (const FirstVisit& visit : encoder_.append(states[i], kExplorerScope, batch_)) {
+    const SeenVisits seen = encode(states[i], scratch_, batch_);
+    for (const FirstVisit& visit : seen.visits) {
       visits.push_back({.state = static_cast<int>(i), .visit = visit, .score = 0});
     }
-    overlooked = overlooked || encoder_.overlooked();
+    left_out = left_out || seen.left_out;
   }
-  if (visits.empty()) return overlooked;
+  if (visits.empty()) return left_out;
   shortfalls(batch_, shortfall_);
   const double unit = states[0].view().open().mean_cost();
   for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -49,7 +50,7 @@ bool ExplorerScorer::score(std::span<const Exploration> states, std::vector<Scor
     const int state = visits[i].state;
     visits[i].score = double{shortfall_[i]} - batch_.ceiling[state] - kWorthOfCost * states[state].spendable() / unit;
   }
-  return overlooked;
+  return left_out;
 }
 
 std::size_t ExplorerScorer::choose(const Task& task, const ExplorerBatch& batch, std::span<const FirstVisit> visits) {
@@ -85,14 +86,13 @@ Plan ExplorerPlanner::walk_until(const Task& task, const Clock& clock) {
   bool optimal = task.view().open().straight_ways_suffice();
   do {
     batch.clear();
-    const std::span<const FirstVisit> visits = scorer_->encoder().append(state, kExplorerScope, batch);
-    const bool overlooked = scorer_->encoder().overlooked();
+    const auto [visits, left_out] = encode(state, scratch_, batch);
     // Where all first visits are too far off to be looked at, the nearest.
     const FirstVisit choice = !visits.empty() ? visits[scorer_->choose(task, batch, visits)]
-                              : overlooked    ? state.nearest_first_visit(search_)
+                              : left_out      ? state.nearest_first_visit(search_)
                                               : FirstVisit();
     if (choice.node == kNoNode) return plan_of_walk(task, walk_through(task, first_visits, search_), optimal);
-    optimal = optimal && visits.size() == 1 && !overlooked;
+    optimal = optimal && visits.size() == 1 && !left_out;
     first_visits.push_back(choice.node);
     state.make(choice, ground);
   } while (!ticker.tick(state.ground_count()));

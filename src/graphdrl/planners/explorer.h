@@ -43,12 +43,10 @@ class ExplorerScorer final : public FirstVisitScorer {
   // the less the network sees, the less its word counts.
   std::size_t choose(const Task& task, const ExplorerBatch& batch, std::span<const FirstVisit> visits);
 
-  ExplorerEncoder& encoder() { return encoder_; }
-
  private:
   SharedExplorer parameters_;
   ExplorerNetwork network_;
-  ExplorerEncoder encoder_;
+  ExplorerScratch scratch_;
   ExplorerBatch batch_;
   std::vector<float> shortfall_;
 };
@@ -65,6 +63,7 @@ class ExplorerPlanner final : public Planner {
   Plan walk_until(const Task& task, const Clock& clock);
 
   std::shared_ptr<ExplorerScorer> scorer_;
+  ExplorerScratch scratch_;
   NearestFirst search_;
 };
 

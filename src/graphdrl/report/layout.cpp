@@ -72,16 +72,13 @@ std::vector<Point> on_a_circle(NodeId count) {
   points.reserve(static_cast<std::size_t>(count));
   for (NodeId node = 0; node < count; ++node) {
     const double angle = 2 * std::numbers::pi * node / count;
-    points.push_back({std::sin(angle), std::cos(angle)});
+    points.push_back({count * std::sin(angle), count * std::cos(angle)});
   }
   return points;
 }
 
-}  // namespace
-
-std::vector<Point> lay_out(const Graph& graph) {
+std::vector<Point> by_stress(const Graph& graph) {
   const NodeId count = graph.node_count();
-  if (graph.is_complete() || count < 3) return on_a_circle(count);
   std::vector<Edge> edges = graph.edges();
   for (Edge& edge : edges) edge.cost = 1;
   std::vector<Pair> pairs = pairs_of(Graph::from_edges(count, edges));
@@ -113,6 +110,23 @@ std::vector<Point> lay_out(const Graph& graph) {
     }
   }
   return points;
+}
+
+}  // namespace
+
+std::vector<Point> lay_out(const Graph& graph) {
+  const bool is_stressed = !graph.is_complete() && graph.node_count() >= 3;
+  std::vector<Point> points = is_stressed ? by_stress(graph) : on_a_circle(graph.node_count());
+  const auto rounded = [](double value) { return std::round(1000 * value) / 1000; };
+  for (Point& point : points) point = {rounded(point.x), rounded(point.y)};
+  return points;
+}
+
+std::vector<Point> places_of(const World& world) {
+  if (!world.has_places()) return lay_out(world.open());
+  std::vector<Point> places;
+  for (NodeId node = 0; node < world.node_count(); ++node) places.push_back(world.place(node));
+  return places;
 }
 
 }  // namespace graphdrl

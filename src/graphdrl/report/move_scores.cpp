@@ -18,11 +18,12 @@ MoveScores shortfalls_along(const PlanReport& report, SharedExplorer explorer) {
   MoveScores scores{.name = "expected shortfall", .lower_is_better = true, .steps = {}};
   ExplorerScorer scorer(std::move(explorer));
   NodeSet ground(report.world.node_count());
+  ExplorerScratch scratch;
   std::vector<float> shortfall;
   follow(report, [&](const Observation& observation) {
     ground.insert(observation.position);
     ExplorerBatch batch;
-    const auto visits = scorer.encoder().append(Exploration(observation, ground), kExplorerScope, batch);
+    const auto visits = encode(Exploration(observation, ground), scratch, batch).visits;
     std::vector<MoveScore>& moves = scores.steps.emplace_back();
     if (visits.empty()) return;
     scorer.shortfalls(batch, shortfall);

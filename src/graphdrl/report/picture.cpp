@@ -75,12 +75,7 @@ void Picture::place_cells() {
 }
 
 void Picture::place_nodes() {
-  std::vector<Point> points;
-  if (world_.has_places()) {
-    for (NodeId node = 0; node < world_.node_count(); ++node) points.push_back(world_.place(node));
-  } else {
-    points = lay_out(world_.open());
-  }
+  const std::vector<Point> points = places_of(world_);
   double left = std::numeric_limits<double>::infinity();
   double bottom = left;
   double right = -left;
@@ -245,13 +240,13 @@ void Picture::draw_walk(Canvas& canvas) const {
     for (std::size_t step = begin; step < end; ++step) {
       if (walk_[step] == walk_[step + 1]) continue;  // a blocked move
       const int run = runs[std::minmax(walk_[step], walk_[step + 1])]++;
-      const int place = (run % 2 == 1 ? 1 : -1) * ((run + 1) / 2);  // 0, 1, -1, 2, …
-      const double lane = place * std::min(4.0, spacing_ / 6);
+      const int lane = (run % 2 == 1 ? 1 : -1) * ((run + 1) / 2);  // 0, 1, -1, 2, …
+      const double beside = lane * std::min(4.0, spacing_ / 6);
       const Point a = places_[walk_[step]];
       const Point b = places_[walk_[step + 1]];
       const double length = std::max(1e-9, std::hypot(b.x - a.x, b.y - a.y));
       // To the same side in both directions of the edge.
-      const double side = walk_[step] < walk_[step + 1] ? lane : -lane;
+      const double side = walk_[step] < walk_[step + 1] ? beside : -beside;
       const Point shift{-side * (b.y - a.y) / length, side * (b.x - a.x) / length};
       from = {a.x + shift.x, a.y + shift.y};
       to = {b.x + shift.x, b.y + shift.y};

@@ -10,6 +10,7 @@
 #include "graphdrl/io/json.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/report/base64.h"
+#include "graphdrl/report/layout.h"
 #include "graphdrl/report/page_parts.h"
 
 namespace graphdrl {
@@ -55,13 +56,10 @@ Json world_json(const World& world) {
     json["cols"] = world.map()->cols;
   } else {
     json["edges"] = edges_of(world.graph());
-    if (world.has_places()) {
-      json["x"] = Json::array();
-      json["y"] = Json::array();
-      for (NodeId node = 0; node < world.node_count(); ++node) {
-        json["x"].push_back(world.place(node).x);
-        json["y"].push_back(world.place(node).y);
-      }
+    json["laid_out"] = !world.has_places();
+    for (const Point& place : places_of(world)) {
+      json["x"].push_back(place.x);
+      json["y"].push_back(place.y);
     }
   }
   if (!world.labels().empty()) json["labels"] = world.labels();

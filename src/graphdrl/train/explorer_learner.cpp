@@ -107,7 +107,7 @@ double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rat
   batch_.clear();
   label_.clear();
   for (const Lesson* const lesson : lessons) {
-    lesson->append_to(batch_, encoder_);
+    lesson->append_to(batch_, scratch_);
     label_.insert(label_.end(), lesson->shortfall.begin(), lesson->shortfall.end());
   }
   shortfall_.resize(label_.size());

@@ -45,7 +45,7 @@ class ExplorerLearner {
   ExplorerParameters grad_;
   Adam adam_;
   ExplorerNetwork network_;
-  ExplorerEncoder encoder_;
+  ExplorerScratch scratch_;
   ExplorerBatch batch_;
   std::vector<float> label_;      // [C]
   std::vector<float> shortfall_;  // [C]

@@ -25,7 +25,7 @@ std::optional<std::vector<Lesson>> LessonArrays::lessons(const LessonOptions& op
   std::span<const std::uint64_t> words = visited;                      // of the lessons to come
   std::span<const float> labels = label;
   std::vector<Lesson> lessons;
-  ExplorerEncoder encoder;
+  ExplorerScratch scratch;
   ExplorerBatch batch;
   for (std::size_t i = 0; i < seed.size(); ++i) {
     std::shared_ptr<const LessonWorld>& at = worlds[seed[i]];
@@ -47,7 +47,7 @@ std::optional<std::vector<Lesson>> LessonArrays::lessons(const LessonOptions& op
                        .scope = static_cast<int>(scope[i]),
                        .shortfall = {own.begin(), own.end()}});
     batch.clear();
-    if (std::ssize(lessons.back().append_to(batch, encoder)) != label_count[i]) return std::nullopt;
+    if (std::ssize(lessons.back().append_to(batch, scratch)) != label_count[i]) return std::nullopt;
     words = words.subspan(set_words);
     labels = labels.subspan(own.size());
   }

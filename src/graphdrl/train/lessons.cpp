@@ -99,10 +99,11 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
 
   std::vector<Lesson> lessons;
   ExplorerBatch batch;
+  ExplorerScratch scratch;
   std::vector<float> shortfall;
   for (;;) {
     batch.clear();
-    const auto visits = walk.append_to(batch, scorer.encoder());
+    const auto visits = walk.append_to(batch, scratch);
     if (visits.empty()) return lessons;
     if (chance(share) && visits.size() > 1) {
       lessons.push_back(walk);

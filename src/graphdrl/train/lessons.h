@@ -50,10 +50,10 @@ struct Lesson {
   int scope;                     // nodes the network looks at
   std::vector<float> shortfall;  // by first visit; kUnlabelled for some where there are many
 
-  // Appends the state; gives its first visits, until the encoder's next call.
-  std::span<const FirstVisit> append_to(ExplorerBatch& batch, ExplorerEncoder& encoder) const {
+  // Appends the state; gives its first visits, until the scratch memory is used again.
+  std::span<const FirstVisit> append_to(ExplorerBatch& batch, ExplorerScratch& scratch) const {
     const Task task(at->world, position, std::max(0.0, spendable));
-    return encoder.append(Exploration(task, visited, visited.count(), position, spendable), scope, batch);
+    return encode(Exploration(task, visited, visited.count(), position, spendable), scratch, batch, scope).visits;
   }
 };
 

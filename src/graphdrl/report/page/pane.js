@@ -64,7 +64,7 @@ class Pane {
     this.find('.missed-key').hidden = trail.visited[trail.last] === world.valid_count;
     this.find('.score-key').hidden = !trail.plan.scores;
     this.find('.scores').hidden = !trail.plan.scores;
-    if (world.placed) this.note('This graph has no coordinates. It is drawn so that near nodes lie near each other.');
+    if (world.laid_out) this.note('This graph has no coordinates. It is drawn so that near nodes lie near each other.');
   }
 
   note(text) {

@@ -61,17 +61,13 @@ class World {
     this.edges = new Uint32Array(0);
   }
 
-  read_graph({ edges, x, y }) {
+  read_graph({ edges, x, y, laid_out }) {
     check(Array.isArray(edges) && edges.length % 2 === 0, 'the edges are not a list of pairs');
     for (const node of edges) check(this.has(node), `an edge names node ${node}, which is not there`);
     this.edges = Uint32Array.from(edges);
-    this.placed = !(x && y);
-    if (this.placed) {
-      [this.x, this.y] = place_nodes(this.node_count, this.edges);
-    } else {
-      this.x = Float32Array.from(this.list_of(x, 'x coordinates'));
-      this.y = Float32Array.from(this.list_of(y, 'y coordinates'), (value) => -value);
-    }
+    this.laid_out = Boolean(laid_out);
+    this.x = Float32Array.from(this.list_of(x ?? [], 'x coordinates'));
+    this.y = Float32Array.from(this.list_of(y ?? [], 'y coordinates'), (value) => -value);
     this.measure();
   }
 
