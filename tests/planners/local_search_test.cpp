@@ -12,6 +12,7 @@
 #include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/planners/annealing.h"
+#include "graphdrl/planners/moves.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/planners/route.h"
 
@@ -198,6 +199,148 @@ TEST(Route, HasRoomForManyTargetsInOnePlace) {
   }
   EXPECT_TRUE(route.before(last, end));
   EXPECT_EQ(route.next(after), end - 1);
+}
+
+// A line 0 - 1 - 2 … of edges that cost 1, so that target i is node i.
+World line_world(NodeId count) {
+  std::vector<Edge> edges;
+  for (NodeId node = 1; node < count; ++node) edges.push_back({node - 1, node});
+  return World("line", Graph::from_edges(count, edges), std::vector<bool>(count));
+}
+
+void set_route(Draft& draft, const std::vector<int>& order) {
+  draft.route.assign(order, std::vector<double>(order.size() + 1, kNoLimit));
+}
+
+// Every `step`th target from `first` on.
+std::vector<int> some_targets(const Targets& targets, int first, int step) {
+  std::vector<int> order;
+  for (int target = first; target < targets.end(); target += step) order.push_back(target);
+  return order;
+}
+
+TEST(StringRemoval, TakesOutTargetsThatStandTogether) {
+  const World world = line_world(10);
+  const Targets targets(Task(world, 0, 9), {});
+  Draft draft(targets, 9, 1);
+  const std::vector<int> all = some_targets(targets, 1, 1);
+  set_route(draft, all);
+  for (int round = 0; round < 200; ++round) {
+    draft.removed.clear();
+    const StringRemoval removal = StringRemoval::propose(draft, 5, 3);
+    ASSERT_GE(removal.length, 1);
+    ASSERT_LE(removal.length, 3);
+    ASSERT_LE(removal.first, 5);
+    ASSERT_GT(removal.first + removal.length, 5);
+    removal.apply(draft);
+    std::vector<int> expected(removal.length);
+    std::iota(expected.begin(), expected.end(), removal.first);
+    ASSERT_EQ(draft.removed, expected);
+    ASSERT_EQ(std::ssize(draft.route.order()), 9 - removal.length);
+    draft.route.undo();
+    ASSERT_EQ(draft.route.order(), all);
+  }
+  draft.removed.clear();
+  StringRemoval{.first = 8, .length = 5}.apply(draft);
+  EXPECT_THAT(draft.removed, testing::ElementsAre(8, 9)) << "the route ends there";
+}
+
+TEST(Reversal, CostsWhatItProposes) {
+  const World world = family_world("geometric", 30, /*weighted=*/true);
+  const Targets targets(task_of(world), {});
+  Draft draft(targets, 1e9, 1);
+  const std::vector<int> order = some_targets(targets, 1, 1);
+  set_route(draft, order);
+  const double cost = draft.route.cost();
+  for (int one = 1; one < targets.end(); ++one) {
+    for (int other = one + 1; other < targets.end(); ++other) {
+      for (const bool forward : {true, false}) {
+        const auto reversal = Reversal::propose(draft, one, other, forward);
+        ASSERT_EQ(reversal.has_value(), other > one + 1);
+        if (!reversal) continue;
+        reversal->apply(draft);
+        ASSERT_NEAR(draft.route.cost(), cost + reversal->added, 1e-9);
+        ASSERT_EQ(forward ? draft.route.next(one) : draft.route.previous(other), forward ? other : one);
+        draft.route.undo();
+        ASSERT_EQ(draft.route.order(), order);
+        ASSERT_EQ(draft.route.cost(), cost);
+      }
+    }
+  }
+}
+
+// Beside every place tried.
+TEST(Insertion, TakesTheCheapestPlaceThatTheLimitAllows) {
+  for (const bool directed : {false, true}) {
+    const World world = family_world("erdos-renyi", 20, /*weighted=*/true, directed);
+    const Targets targets(task_of(world, End::at(world.valid_nodes().back())), {});
+    Draft draft(targets, 1e9, 1, {.blink = 0});
+    set_route(draft, some_targets(targets, 2, 2));
+    const double cost = draft.route.cost();
+    for (const int target : some_targets(targets, 1, 2)) {
+      double least = kNoLimit;
+      for (int at = 0; at != targets.end(); at = draft.route.next(at)) {
+        const double added = targets.cost(at, target) + targets.cost(target, draft.route.next(at));
+        least = std::min(least, added - draft.route.link(at));
+      }
+      draft.limit = cost + least + 1e-6;
+      const auto insertion = Insertion::propose(draft, target);
+      ASSERT_TRUE(insertion.has_value());
+      EXPECT_NEAR(insertion->added, least, 1e-9);
+      insertion->apply(draft);
+      EXPECT_NEAR(draft.route.cost(), cost + least, 1e-9);
+      draft.route.undo();
+      draft.limit = cost + least - 1e-6;
+      EXPECT_FALSE(Insertion::propose(draft, target).has_value());
+    }
+  }
+}
+
+TEST(TwoOpt, UntanglesWhatChanged) {
+  const World world = line_world(10);
+  const Targets targets(Task(world, 0, 9), {});
+  Draft draft(targets, 20, 1);
+  const std::vector<int> sorted = some_targets(targets, 1, 1);
+  set_route(draft, sorted);
+  TwoOpt two_opt(targets);
+  two_opt.apply(*Reversal::propose(draft, 3, 7, /*forward=*/true), draft);
+  EXPECT_THAT(draft.route.order(), testing::ElementsAre(1, 2, 3, 7, 6, 5, 4, 8, 9));
+  EXPECT_EQ(draft.route.cost(), 15);
+  two_opt.improve(draft);
+  EXPECT_EQ(draft.route.order(), sorted);
+  EXPECT_EQ(draft.route.cost(), 9);
+}
+
+TEST(Moves, KeepToTheLimitAndCanBeUndone) {
+  for (const bool directed : {false, true}) {
+    const World world = family_world("erdos-renyi", 60, /*weighted=*/true, directed);
+    const Targets targets(task_of(world), {});
+    Draft draft(targets, task_of(world).limit() / 2, 1);
+    draft.selective = true;
+    set_route(draft, {});
+    Rng rng(3);
+    for (int i = 0; i < 600; ++i) {
+      const std::vector<int> before = draft.route.order();
+      const int seed = draft.random_target();
+      if (i % 3 == 0) {
+        ruin(draft, seed);
+        recreate(draft, seed);
+      } else if (i % 3 == 1) {
+        move_region(draft, seed, 10);
+      } else {
+        cross_over(draft, some_targets(targets, 1, 2));
+      }
+      ASSERT_LE(draft.route.cost(), draft.limit * (1 + kCostRounding));
+      ASSERT_EQ(std::count(draft.marked.begin(), draft.marked.end(), 1), 0);
+      if (rng.below(2) == 0) {
+        draft.route.keep();
+      } else {
+        draft.route.undo();
+        ASSERT_EQ(draft.route.order(), before);
+      }
+    }
+    EXPECT_GT(draft.route.order().size(), 5U);
+  }
 }
 
 TEST(Annealing, RecombinesRoutes) {

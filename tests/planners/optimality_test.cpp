@@ -247,7 +247,6 @@ TEST(Beam, ClaimsNoOptimumWhereItDidNotLookAtEverything) {
   EXPECT_FALSE(ExplorerPlanner(std::make_shared<ExplorerScorer>(builtin_explorer())).plan(large).optimal);
   EXPECT_TRUE(beam_plan(small, {.width = 1000}).optimal) << "all leaves are as near as the sixteenth";
   EXPECT_FALSE(beam_plan(large, {.width = 1000}).optimal) << "64 ties are enough";
-  EXPECT_FALSE(beam_plan(small, {.width = 1000, .cut_ties = true}).optimal);
   // One way out of 200, each longer than the last.
   std::vector<Edge> rays;
   for (NodeId leaf = 1; leaf <= 200; ++leaf) rays.push_back({0, leaf, 1.0 * leaf});

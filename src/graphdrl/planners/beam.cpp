@@ -15,15 +15,14 @@
 namespace graphdrl {
 namespace {
 
-// Each level keeps a third by each ranking. They differ in their share of the penalties: all of them serve mazes best,
-// a quarter graphs without dead ends, none budgets that will not do for everything, where what is left over costs
-// nothing.
+// Each level keeps a third by each ranking. They differ in their share of the penalties: 1 serves mazes best, a quarter
+// graphs without dead ends, 0 budgets too small for everything, where leftovers cost nothing.
 constexpr std::array<double, kRankings> kPenaltyShares = {1, 0.25, 0};
 constexpr double kUnscored = 1e9;  // ranks first visits behind all that were scored
 constexpr int kExpansionsPerTick = 64;
 
-// How many partial walks of a level the scorer sees. Of 50, 6 serve as well as all in loop mazes (docs/explorer.md); by
-// the root, for a wide beam is there to look beyond the network.
+// How many partial walks of a level the scorer sees: in loop mazes, 6 of 50 serve as well as all (docs/explorer.md). It
+// grows by the root, since a wide beam is to look beyond the network.
 int scored_per_level(int width) {
   return static_cast<int>(std::ceil(0.75 * std::sqrt(width)));
 }
@@ -63,8 +62,10 @@ class Beam {
   void expand(int parent);
   void consider(int parent, const NodeSetView& visited, NodeId node, double cost);
   void expand_scored(int first, int end);
-  Rankings rankings_of(double spent, double penalties) const;
-  Rankings all_rankings(double spent, double penalties) const;
+  void add_candidate(int parent, NodeId node, double spent, double penalties, const Rankings& rankings);
+  Rankings by_penalties(double spent, double penalties) const;
+  Rankings by_score(double score, double spent, double penalties) const;
+  Rankings without_score(double spent, double penalties) const;
   double most_useful_cost(const Partial& from) const;
   void keep_best();
   void note_best();
@@ -74,7 +75,7 @@ class Beam {
     return {task_, visited_sets_[parent], visited_, level_[parent].position, limit_ - level_[parent].spent};
   }
 
-  // What rankings count as spent: less what the prizes would cost, where there are any.
+  // What rankings count as spent: with prizes, less what those collected are worth.
   double priced(const Partial& from, NodeId node, double spent) const {
     return task_.has_prizes() ? spent - worth_ * (from.prize + task_.prize(node)) : spent;
   }
@@ -114,7 +115,7 @@ Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* score
       unit_(view_.open().mean_cost()),
       width_(options.width),
       branching_(options.branching),
-      most_branches_(options.cut_ties ? options.branching : kTiesPerBranch * options.branching),
+      most_branches_(kTiesPerBranch * options.branching),
       scorer_(scorer),
       scored_per_level_(scorer == nullptr ? 0 : scored_per_level(width_)),
       visited_(0),
@@ -142,8 +143,8 @@ Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* score
 
 Plan Beam::run(const Clock& clock) {
   Ticker ticker(clock, kExpansionsPerTick);
-  // Every partial walk of a level has visited as many nodes: the cheapest of the last level is the answer, but where
-  // there are prizes.
+  // All partial walks of a level have visited the same number of nodes. So without prizes the cheapest of the last
+  // level is the answer.
   for (;;) {
     note_best();
     candidates_.clear();
@@ -154,7 +155,7 @@ Plan Beam::run(const Clock& clock) {
   }
 }
 
-// Of the level, unless an older one is worth more.
+// Remembers the best partial walk of the level, unless an older one is worth more.
 void Beam::note_best() {
   const auto cost = [&](const Partial& partial) { return partial.spent + task_.cost_to_end(partial.position); };
   const auto level_best = std::min_element(level_.begin(), level_.end(), [&](const Partial& a, const Partial& b) {
@@ -198,25 +199,30 @@ bool Beam::expand_level(Ticker& ticker) {
   return true;
 }
 
-// By spent cost and each share of the penalties.
-Rankings Beam::rankings_of(double spent, double penalties) const {
+// The rankings of a beam without a scorer: spent cost and each share of the penalties.
+Rankings Beam::by_penalties(double spent, double penalties) const {
   Rankings rankings{};
   for (std::size_t i = 0; i < rankings.size(); ++i) rankings[i] = spent + kPenaltyShares[i] * unit_ * penalties;
   return rankings;
 }
 
-// Of a first visit that is not scored.
-Rankings Beam::all_rankings(double spent, double penalties) const {
-  const Rankings plain = rankings_of(spent, penalties);
-  return scorer_ == nullptr ? plain : Rankings{kUnscored + spent / unit_, plain[0], plain[1]};
+// The rankings of a beam with one: its score takes the place of the last share.
+Rankings Beam::by_score(double score, double spent, double penalties) const {
+  const Rankings plain = by_penalties(spent, penalties);
+  return {score, plain[0], plain[1]};
 }
 
-// A first visit that costs more is behind `width` others by every ranking, whatever it does to the penalties.
+// The rankings of a first visit that no scorer saw.
+Rankings Beam::without_score(double spent, double penalties) const {
+  return scorer_ == nullptr ? by_penalties(spent, penalties) : by_score(kUnscored + spent / unit_, spent, penalties);
+}
+
+// A first visit that costs more is behind `width` others by every ranking, however it changes the penalties.
 double Beam::most_useful_cost(const Partial& from) const {
   double most = 0;
   const Rankings& worst = candidates_.worst_useful();
   const double spent = from.spent - worth_ * (from.prize + most_prize_);
-  const Rankings least = rankings_of(spent, from.penalties - kIsolatedPenalty);
+  const Rankings least = by_penalties(spent, from.penalties - kIsolatedPenalty);
   if (scorer_ == nullptr) {
     for (std::size_t i = 0; i < worst.size(); ++i) most = std::max(most, worst[i] - least[i]);
     return most;
@@ -225,27 +231,31 @@ double Beam::most_useful_cost(const Partial& from) const {
   return std::max({most, worst[1] - least[0], worst[2] - least[1]});
 }
 
-// Makes a candidate of a first visit, unless it cannot be kept.
+// Adds a first visit that is not scored to the candidates, unless it cannot be kept.
 void Beam::consider(int parent, const NodeSetView& visited, NodeId node, double cost) {
   const Partial& from = level_[parent];
   const double spent = from.spent + cost;
   const double to_rank = priced(from, node, spent);
   // The node's own penalty goes, others can only rise: most candidates need no closer look.
   const double own = leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
-  if (candidates_.is_useless(all_rankings(to_rank, from.penalties - own))) {
+  if (candidates_.is_useless(without_score(to_rank, from.penalties - own))) {
     dropped_ = true;
     return;
   }
   const double penalties = from.penalties + change_of_penalties(view_, visited, node);
+  add_candidate(parent, node, spent, penalties, without_score(to_rank, penalties));
+}
+
+void Beam::add_candidate(int parent, NodeId node, double spent, double penalties, const Rankings& rankings) {
   candidates_.add({.parent = parent,
                    .node = node,
                    .spent = spent,
                    .penalties = penalties,
-                   .rankings = all_rankings(to_rank, penalties),
-                   .visited_hash = from.hash ^ spread(node)});
+                   .rankings = rankings,
+                   .visited_hash = level_[parent].hash ^ spread(node)});
 }
 
-// Makes the candidates of expand() that cost 1. REQUIRES: every edge does.
+// Adds those of expand()'s candidates that cost 1. REQUIRES: every edge costs 1.
 void Beam::expand_one_step(int parent) {
   const Partial& from = level_[parent];
   if (from.spent + 1 > limit_) return;
@@ -289,24 +299,15 @@ void Beam::expand(int parent) {
 
 void Beam::expand_scored(int first, int end) {
   states_.clear();
-  for (int parent = first; parent < end; ++parent) {
-    states_.push_back(exploration(parent));
-  }
+  for (int parent = first; parent < end; ++parent) states_.push_back(exploration(parent));
   dropped_ = scorer_->score(states_, scored_) || dropped_;
-  for (const ScoredVisit& scored : scored_) {
-    const int parent = first + scored.state;
-    const Partial& from = level_[parent];
-    const double spent = from.spent + scored.visit.cost;
-    const double penalties =
-        from.penalties + change_of_penalties(view_, states_[scored.state].ground(), scored.visit.node);
-    const Rankings plain = rankings_of(priced(from, scored.visit.node, spent), penalties);
-    const double prize = task_.has_prizes() ? (from.prize + task_.prize(scored.visit.node)) / mean_prize_ : 0;
-    candidates_.add({.parent = parent,
-                     .node = scored.visit.node,
-                     .spent = spent,
-                     .penalties = penalties,
-                     .rankings = {scored.score - prize, plain[0], plain[1]},
-                     .visited_hash = from.hash ^ spread(scored.visit.node)});
+  for (const auto& [state, visit, score] : scored_) {
+    const Partial& from = level_[first + state];
+    const double spent = from.spent + visit.cost;
+    const double penalties = from.penalties + change_of_penalties(view_, states_[state].ground(), visit.node);
+    const double prize = task_.has_prizes() ? (from.prize + task_.prize(visit.node)) / mean_prize_ : 0;
+    add_candidate(first + state, visit.node, spent, penalties,
+                  by_score(score - prize, priced(from, visit.node, spent), penalties));
   }
 }
 
@@ -332,13 +333,12 @@ void Beam::keep_best() {
   level_.swap(next_level_);
 }
 
-// The most memory a beam can come to need: every level's chain of first visits, two levels of partial walks with their
-// rows of bits, and the candidates of each; of a scored beam, as if all were scored.
+// The most memory that a beam may need: every level's chain of first visits, two levels of partial walks with their
+// rows of bits, and the candidates of each; of a beam with a scorer, as if all were scored.
 double bytes_needed(const View& view, const BeamOptions& options, const FirstVisitScorer* scorer) {
   const double nodes = view.valid_count();
-  const double ties = options.cut_ties ? 1 : kTiesPerBranch;
   const double scored = scorer == nullptr ? 0 : scorer->most_visits();
-  const double branches = std::min(nodes, std::max(ties * options.branching, scored));
+  const double branches = std::min(nodes, std::max(1.0 * kTiesPerBranch * options.branching, scored));
   return options.width * (nodes * sizeof(Link) + 2 * (nodes / 8 + sizeof(Partial)) + branches * kCandidateBytes);
 }
 
@@ -371,7 +371,7 @@ Plan BeamPlanner::search_until(const Task& task, const Clock& clock) {
   };
   Plan best = search_once(task, options_, clock);
   if (other_ != nullptr && !best.optimal) best = better_of(std::move(best), other_->plan(task, clock));
-  // Each of the two grows as long as there is room.
+  // Width and branching each grow while memory allows.
   for (BeamOptions wider = options_; !best.optimal && !clock.passed();) {
     const BeamOptions before = wider;
     wider.branching = std::min(wider.branching, task.view().valid_count()) * 2;

@@ -10,11 +10,10 @@
 namespace graphdrl {
 
 struct BeamOptions {
-  int width = 50;      // partial walks kept per level
-  int branching = 16;  // first visits looked at from each, nearest first; all in its scope where the scorer scores them
-  // true: stop at `branching`, ties broken by the graph's order. false: also take ties, up to kTiesPerBranch ·
-  // branching.
-  bool cut_ties = false;
+  int width = 50;  // partial walks kept per level
+  // First visits tried from each, nearest first, and as many equally near ones as make it kTiesPerBranch · branching. A
+  // scorer tries all in its scope.
+  int branching = 16;
 };
 
 inline constexpr int kTiesPerBranch = 4;
@@ -25,27 +24,27 @@ inline constexpr double kMaxBeamBytes = 4e9;
 bool beam_fits(const View& view, const BeamOptions& options);
 
 // The best walk found; it ends with its last first visit, or goes on to where it must end. Of walks that visit as many
-// nodes, the cheapest. Each level keeps a third by each of three rankings, since none works everywhere: what was spent
-// and all, a quarter or none of the penalties for what is left over. A scorer's word takes the place of the last one;
-// it scores the first visits of ⌈¾ √width⌉ partial walks of a level: two thirds of those its own best, a third the best
-// by all penalties. First visits that it did not score come behind in its ranking, the cheapest first. A width of one
-// keeps by the first ranking only.
+// nodes, the cheapest. Each level keeps a third by each of three rankings, since none works everywhere: the cost spent,
+// plus all, a quarter or none of the penalties for leftovers. With a scorer, its score replaces the last one; it scores
+// the first visits of ⌈¾ √width⌉ partial walks of a level: two thirds of them the best by its score, a third the best
+// by all penalties. First visits that it did not score rank behind by score, the cheapest first. A width of one keeps
+// by the first ranking only.
 //
-// Optimal where no partial walk had to be dropped and no first visit was left out. Deterministic. Once the deadline
-// passes, the best partial walk. Cost: a level looks at what is near its partial walks and may still be kept.
+// Optimal if no partial walk was dropped and no first visit left out. Deterministic. Once the clock passes, the best
+// partial walk. Cost: a level searches around its partial walks, as far as first visits may still be kept.
 //
-// Where there are prizes, rankings count them against what was spent, at the price of all prizes for the whole budget.
-// Throws Error where the beam could need more than kMaxBeamBytes.
+// With prizes, rankings subtract their worth from the cost spent, at the price of all prizes for the whole budget.
+// Throws Error if the beam could need more than kMaxBeamBytes.
 // REQUIRES: width and branching of at least 1.
 Plan beam_plan(const Task& task, const BeamOptions& options, const Clock& clock = {},
                FirstVisitScorer* scorer = nullptr);
 
-// Searches once without a scorer and, if there is one, once with it; the better walk counts. With a deadline it
-// searches again and again with twice the width and branching, until the time is up, a walk is known to be optimal or
-// memory would run short; what is cut short is walked on by the nearest rule [plan_by_deadline()].
+// Searches once without a scorer and, if it has one, once with it, and takes the better walk. With a deadline it goes
+// on with twice the width and branching each time, until the clock passes, a walk is proved optimal or memory would run
+// short; a search cut short is finished by the nearest rule [plan_by_deadline()].
 class BeamPlanner final : public Planner {
  public:
-  // other: a planner whose plan is tried too where there is a deadline; may be null.
+  // other: with a deadline, its plan is tried too; may be null.
   explicit BeamPlanner(BeamOptions options, std::shared_ptr<FirstVisitScorer> scorer = nullptr,
                        std::unique_ptr<Planner> other = nullptr)
       : options_(options), scorer_(std::move(scorer)), other_(std::move(other)) {}

@@ -1,15 +1,15 @@
 // Exact search: the walk that visits the most nodes a budget allows.
 //
-// A walk that wastes nothing goes from one first visit to the next by the cheapest way through visited ground, so a
-// state is (visited set, position) and a move is a first visit.
+// An optimal walk goes from one first visit to the next by the cheapest way through visited ground. So a state is
+// (visited set, position), and a move is a first visit.
 //
-// Where every edge costs 1, states are expanded in order of waste, the steps that visited nothing new: a state that
-// wasted w of a budget b can never gain more than b - w nodes, so the search ends as soon as what it has found cannot
-// be beaten. Among the optimal walks it returns the cheapest, and of these the lexicographically first.
+// If every edge costs 1, states are expanded in order of waste, the steps that visited nothing new. A state that wasted
+// w of a budget b never gains more than b - w nodes, so the search ends once its best walk cannot be beaten. Among the
+// optimal walks it returns the cheapest, and of these the lexicographically first.
 //
-// Where edges have costs, nodes prizes, or the walk must end somewhere, states are expanded in order of what they can
-// be worth at most, every node left at the cost of its cheapest arrival. Among the optimal walks it returns the
-// cheapest; of several such, always the same one.
+// If edges have costs, nodes prizes, or the walk must end somewhere, states are expanded in order of an upper bound of
+// their worth, every node left at the cost of its cheapest arrival. Among the optimal walks it returns the cheapest; of
+// several such, always the same one.
 #pragma once
 
 #include <memory>
@@ -30,16 +30,16 @@ class SearchOutOfReach : public Error {
   using Error::Error;
 };
 
-// The prize of an optimal walk [Plan::prize]. Empty where the search is out of reach: too many nodes or too many
-// states, never too much time, so that the answer is the same everywhere.
+// The prize of an optimal walk [Plan::prize]. Empty if the search is out of reach: too many nodes or states, never too
+// much time, so that the answer is the same everywhere.
 std::optional<double> exact_prize(const Task& task);
 
-// The optimal walk. Empty where out of reach or once the clock passes.
+// The optimal walk. Empty if out of reach, or once the clock passes.
 std::optional<std::vector<NodeId>> exact_walk(const Task& task, const Clock& clock = {});
 
-// Searches as above, and where that is out of reach by branch and cut [LpBound] from another planner's walk, which then
-// need not be the cheapest of those worth the same. Throws SearchOutOfReach where neither ends within its limits. With
-// a deadline the three share the time, and the best walk is given once it is up.
+// Searches as above. If that is out of reach, goes on by branch and cut [LpBound] from another planner's walk; the
+// result need not be the cheapest of its prize. Throws SearchOutOfReach if neither ends within its limits. With a
+// deadline the three share the time, and the best walk is given once it passes.
 class ExactPlanner final : public Planner {
  public:
   explicit ExactPlanner(std::unique_ptr<Planner> incumbent = nullptr) : incumbent_(std::move(incumbent)) {}

@@ -8,15 +8,15 @@
 
 namespace graphdrl {
 
-// A doubly linked list from target 0 to the end. Targets carry labels that ascend along it, so that which of two comes
-// first is known at once, and putting one in renumbers nothing [Dietz 1982]. Changes since keep() can be undone.
+// A doubly linked list from target 0 to the end. Labels of targets ascend along it, so that before() is O(1) and
+// inserting renumbers nothing [Dietz 1982]. Changes since keep() can be undone.
 class Route {
  public:
   static constexpr int kNone = -1;
 
   explicit Route(const Targets& targets) : targets_(&targets), stops_(targets.end() + 1) {}
 
-  // Starts anew. links: the cost of the way to each of `order`, and to the end, where it is not known.
+  // Starts anew. links: the cost of the way to each of `order`, and to the end; used where Targets know none.
   void assign(const std::vector<int>& order, const std::vector<double>& links);
 
   bool contains(int target) const { return stops_[target].next != kNone; }  // not of the end
@@ -29,9 +29,9 @@ class Route {
 
   // in, out: the costs of the ways to it and on.
   void insert(int target, int after, double in, double out);
-  // Where the way from one neighbour to the other is not known, it goes on leading where the target was.
+  // If the direct cost is unknown, the link keeps the sum of both old links, an upper bound.
   void remove(int target);
-  // Turns round what stands from `first` to `last`. in, out: the costs of the ways to `last`, and on from `first`.
+  // Reverses the order from `first` to `last`. in, out: the costs of the ways to `last`, and on from `first`.
   // REQUIRES: edges lead both ways.
   void reverse(int first, int last, double in, double out);
 
@@ -69,11 +69,11 @@ class Route {
     Kind kind;
     int target;  // the first after a reversal
     int other;   // it stood after this one; the last after a reversal
-    double in;   // ways as they were; `in` alone, of the way on, where that was relinked
+    double in;   // old links; of kRelinked the link on alone
     double out;
   };
 
-  double known_or(double link, int from, int to) const;  // what the way costs, where that is known
+  double known_or(double link, int from, int to) const;  // the cost that Targets know, else `link`
   void put(int target, int after, double in, double out);
   void take(int target, double link);
   void turn(int first, int last, double in, double out);

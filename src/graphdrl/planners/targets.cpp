@@ -8,9 +8,8 @@ namespace {
 
 using Next = NearestFirst::Next;
 
-// Where targets are few and far between, a search for the nearest looks at so many nodes at most.
-constexpr int kMostMet = 32 * Targets::kNearest;
-constexpr int kMetPerLook = 4096;  // nodes between two looks at the clock
+constexpr int kMostMet = 32 * Targets::kNearest;  // nodes that a search for the nearest meets; targets may be far apart
+constexpr int kMetPerLook = 4096;                 // nodes between two looks at the clock
 
 }  // namespace
 

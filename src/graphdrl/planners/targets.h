@@ -1,5 +1,4 @@
-// What a walk can go for, and what it costs to get from one to the other: the orienteering problem that a task is
-// [Golden, Levy and Vohra 1987].
+// A task as an orienteering problem [Golden, Levy and Vohra 1987]: targets with prizes, and the costs between them.
 #pragma once
 
 #include <span>
@@ -9,19 +8,19 @@
 
 namespace graphdrl {
 
-// The start is target 0; then come the unvisited nodes that are worth something, and that can be had with what is left
-// enough to get to the end; the end is the last, whether the walk must end somewhere or not. Costs are those of
-// cheapest ways. Up to kTableTargets targets there is a table of them; beyond, a target knows its nearest ones only.
+// Target 0 is the start. Then come the unvisited nodes that are worth something and from which, once visited, the end
+// can still be reached. The end is the last, even where the walk may end anywhere. Costs are those of cheapest ways. Up
+// to kTableTargets targets a table holds them all; beyond, a target knows those of its nearest targets only.
 class Targets {
  public:
   static constexpr int kNearest = 24;         // to try when a target is put into a walk: see docs/search.md
   static constexpr int kTableTargets = 2000;  // a table of 32 MB
 
-  // Cost: a search from every target; over the whole graph where there is a table, else up to its nearest. Gives up
+  // Cost: a search from every target; with a table of all within the limit, else up to the nearest targets. Gives up
   // once the clock passes [complete()].
   explicit Targets(const Task& task, const Clock& clock = {});
 
-  // What is left of these once a walk has gone to `first`, which becomes the start; the start before is none any more.
+  // The targets left once a walk has gone to `first`, which becomes the start; the old start is dropped.
   // REQUIRES: there is a table; `first` is neither the start nor the end.
   Targets after(int first) const;
 
@@ -30,23 +29,23 @@ class Targets {
   // are not metric.
   bool metric() const { return view_.open().straight_ways_suffice(); }
   bool symmetric() const { return into_begin_.empty(); }
-  int end() const { return static_cast<int>(nodes_.size()); }  // the number of the end; how many others there are
+  int end() const { return static_cast<int>(nodes_.size()); }  // the number of the end, and the count of the others
   NodeId node(int target) const { return nodes_[target]; }
-  int target_of(NodeId node) const { return numbers_[node]; }  // -1 where it is none, and of the end
+  int target_of(NodeId node) const { return numbers_[node]; }  // -1 if the node is no target, or the end
   double prize(int target) const { return prizes_[target]; }
-  double total_prize() const { return total_prize_; }  // of all, the end and what the start is worth among them
+  double total_prize() const { return total_prize_; }  // of all, the start and the end included
 
   // The nearest targets, and those it is nearest from, which are the same where edges lead both ways. Nearest first.
   std::span<const int> near(int target) const { return list(near_, near_begin_, target); }
   std::span<const int> into(int target) const { return symmetric() ? near(target) : list(into_, into_begin_, target); }
 
-  // From a target other than the end to another; kNoLimit where it is not known, or where there is no way.
+  // From a target other than the end to another; kNoLimit where it is not known or no way exists.
   double cost(int from, int to) const {
     if (!table_.empty()) return row(from)[to];
     return to == end() ? to_end_[from] : near_cost(from, to);
   }
-  // The same, searched for in the graph: for at most so much and among the nearest nodes, else kNoLimit. Cost: what is
-  // nearer, at most kMostSearched nodes.
+  // The same, searched for in the graph; kNoLimit above `most` or beyond the kMostSearched nearest nodes. Cost: the
+  // nodes that are nearer.
   static constexpr int kMostSearched = 4096;  // more than worlds of 60x60 have: longer ways keep their upper bound
   double searched_cost(int from, int to, double most, NearestFirst& search) const;
 

@@ -13,10 +13,13 @@ namespace {
 
 constexpr int kProbed = 8;            // columns to try branching on
 constexpr int kProbeIterations = 30;  // each way
-constexpr double kViolation = 1e-4;   // less is not worth a row
-constexpr double kIntegral = 1e-5;    // what is as near to a whole number is one
+constexpr double kMostFall = 1e3;     // of a bound, in prizes: a part without walks counts as this
+constexpr double kLeastTrialFall =
+    1e-3;  // added to each of two falls, so that their product tells columns apart where one is 0
+constexpr double kViolation = 1e-4;  // less is not worth a row
+constexpr double kIntegral = 1e-5;   // what is as near to a whole number is one
 
-// The largest number of which all values are multiples, if they are multiples of a simple fraction; else 0.
+// The largest step of which all values are multiples, if they are multiples of a simple fraction; else 0.
 double common_step(const std::vector<double>& values) {
   constexpr double kMost = 1e9;  // steps in a value
   for (const double scale : {1.0, 2.0, 4.0, 8.0, 10.0, 16.0, 100.0, 1000.0}) {
@@ -92,7 +95,8 @@ void WalkRelaxation::add_columns(const Task& task) {
   }
 }
 
-// Where the cost of a walk that ends there cannot be `budget` steps, for the one is odd and the other even. [n]
+// [n] true where, by parity, no walk that ends there costs exactly `budget` steps. All false unless the graph is
+// bipartite by its costs in steps.
 std::vector<bool> WalkRelaxation::odd_ends(double step, double budget) const {
   std::vector<int> colour(nodes_.size(), -1);
   std::vector<int> queue = {0};
@@ -225,9 +229,9 @@ std::vector<int> WalkRelaxation::components(const std::function<bool(const Arc&)
   return component;
 }
 
-// Partitions into each node alone, and into what edges of more than some value join. Of its parts those count for which
-// the row is violated most, the others are one with the start's: a minimum cut chooses among parts, each worth its y,
-// for which the edges at any of them must be paid.
+// Tries partitions into single nodes, and into the components of edges above some value. A minimum cut chooses the
+// parts by which the row is violated most: each is worth its y and costs the edges at it. The others join the start's
+// part.
 void WalkRelaxation::separate_partitions() {
   std::set<std::vector<int>> tried;
   for (const double least : {2.0, 0.99, 0.9, 0.75, 0.6, 0.4}) {
@@ -278,7 +282,7 @@ void WalkRelaxation::separate_partition(const std::vector<int>& component) {
   }
 }
 
-// Each node alone, and what hangs together by edges that are not integral, by more and more of a fraction.
+// Tries single nodes as S, and the components of edges whose u is farther from a whole number than some fraction.
 void WalkRelaxation::separate_parity(const Clock& clock) {
   std::set<std::vector<int>> tried;
   for (const double fraction : {1.0, 0.01, 0.1, 0.2, 0.3, 0.4}) {
@@ -291,9 +295,9 @@ void WalkRelaxation::separate_parity(const Clock& clock) {
   if (found_.empty()) separate_parity_cuts(clock);
 }
 
-// Takes S from minimum cuts between nodes, where the weight of an edge is how far its value is from a whole number. The
-// cuts of a cut tree hold a violated row if there is one without ends [Padberg and Rao 1982; Letchford, Reinelt and
-// Theis 2008]. We take those of an equivalent flow tree [Gusfield 1990].
+// Takes S from minimum cuts between nodes, where an edge's capacity is the distance of its value from a whole number.
+// A cut tree holds a violated row if any exists without ends [Padberg and Rao 1982; Letchford, Reinelt and Theis 2008];
+// the cuts come from an equivalent flow tree [Gusfield 1990].
 void WalkRelaxation::separate_parity_cuts(const Clock& clock) {
   const int count = static_cast<int>(nodes_.size());
   MaxFlow distances(count);
@@ -330,8 +334,8 @@ void WalkRelaxation::separate_parity_cuts(const Clock& clock) {
   scanned_ += distances.scanned();
 }
 
-// For each component the violation is least where F is what is nearer to 1 than to 0, but for one where that is an even
-// number.
+// Adds the rows violated with S a component. The best F holds the values nearer to 1 than to 0; if their number is
+// even, the value nearest to a half changes sides.
 void WalkRelaxation::separate_parity_of(const std::vector<int>& component) {
   struct Cut {
     double distance = 0;  // of all values from the nearest whole number
@@ -397,15 +401,15 @@ void WalkRelaxation::add_parity_row(const std::vector<int>& component, int which
   }
 }
 
-// The network in which flow goes from a node back to the start, node n. An end is a way to the start.
+// Builds the network in which flow goes from a node back to the start, which is node n. An end is an arc to the start.
 void WalkRelaxation::add_links() {
   const int count = static_cast<int>(nodes_.size());
   for (const Arc& arc : arcs_) network_.add_arc(arc.to, arc.from, 0);
   for (int node = 0; node < count; ++node) to_start_.push_back(network_.add_arc(node, count, 0));
 }
 
-// In order of y, so that a node once found connected well enough is in no violated S of those to come: it counts as the
-// start for them, and flows end soon.
+// Checks nodes in descending order of y. A node found connected well enough is in no violated S of a later one: it
+// counts as the start from then on, which keeps flows short.
 void WalkRelaxation::separate_connection(const Clock& clock) {
   const std::int64_t before = network_.scanned();
   for (std::size_t arc = 0; arc < arcs_.size(); ++arc) {
@@ -454,8 +458,13 @@ bool WalkRelaxation::integral() const {
 }
 
 WalkRelaxation::Branches WalkRelaxation::branches() {
-  Branches result;
-  // First, half of the ends.
+  Branches halves = halve_ends();
+  return halves.second.empty() ? split_a_column() : halves;
+}
+
+// The walk ends in one half of the nodes or in the other. Empty where the ends are integral. Cuts the nodes, in their
+// depth-first order, where the halves' sums of z are most equal.
+WalkRelaxation::Branches WalkRelaxation::halve_ends() const {
   std::vector<int> ends;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (end_[i] >= 0 && program_.upper(end_[i]) > 0) ends.push_back(static_cast<int>(i));
@@ -470,51 +479,59 @@ WalkRelaxation::Branches WalkRelaxation::branches() {
     best = std::min(sum, 1 - sum);
     split = i + 1;
   }
-  if (split > 0) {
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      (i < split ? result.second : result.first).push_back({end_[ends[i]], 0, 0});
-    }
-    return result;
+  Branches result;
+  for (std::size_t i = 0; split > 0 && i < ends.size(); ++i) {
+    (i < split ? result.second : result.first).push_back({end_[ends[i]], 0, 0});
   }
-  // Then visits and edges: of those least integral, what lowers both bounds.
-  struct Candidate {
-    int column;
-    double fraction;
-  };
-  std::vector<Candidate> candidates;
+  return result;
+}
+
+// Columns of visits and edges that are least integral, at most kProbed, the least first.
+std::vector<int> WalkRelaxation::least_integral_columns() const {
+  std::vector<int> columns;
+  const auto fraction = [&](int column) { return std::abs(value(column) - std::round(value(column))); };
   const auto add = [&](int column) {
-    const double fraction = std::abs(value(column) - std::round(value(column)));
-    if (fraction > kIntegral) candidates.push_back({column, fraction});
+    if (fraction(column) > kIntegral) columns.push_back(column);
   };
   for (const int column : visit_) add(column);
   for (const Arc& arc : arcs_) {
     add(arc.once);
     if (arc.twice >= 0) add(arc.twice);
   }
-  if (candidates.empty()) return result;
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& one, const Candidate& other) { return one.fraction > other.fraction; });
-  if (std::ssize(candidates) > kProbed) candidates.resize(kProbed);
+  std::stable_sort(columns.begin(), columns.end(), [&](int one, int other) { return fraction(one) > fraction(other); });
+  if (std::ssize(columns) > kProbed) columns.resize(kProbed);
+  return columns;
+}
+
+// Rounds a column up in one part and down in the other: the column by which both bounds fall most [strong branching,
+// Applegate et al. 1995]. Empty where all are integral.
+WalkRelaxation::Branches WalkRelaxation::split_a_column() {
+  Branches result;
+  const std::vector<int> columns = least_integral_columns();
+  if (columns.empty()) return result;
   const double now = program_.bound();
+  const auto fall = [&](const Change& change) {
+    const double bound = program_.probe(change.column, change.lower, change.upper, kProbeIterations);
+    return std::min(kMostFall, now - bound) + kLeastTrialFall;
+  };
   double best_score = -1;
-  for (const Candidate& candidate : candidates) {
-    const int column = candidate.column;
+  for (const int column : columns) {
     const double down = std::floor(value(column) + kIntegral);
-    const std::vector<Change> above = {{column, down + 1, program_.upper(column)}};
-    const std::vector<Change> below = {{column, program_.lower(column), down}};
-    const auto fall = [&](const Change& change) {
-      return std::min(1e3, now - program_.probe(change.column, change.lower, change.upper, kProbeIterations));
-    };
-    const double score = candidates.size() == 1 ? 0 : (fall(above[0]) + 1e-3) * (fall(below[0]) + 1e-3);
+    const Change above = {column, down + 1, program_.upper(column)};
+    const Change below = {column, program_.lower(column), down};
+    double score = 0;
+    if (columns.size() > 1) {
+      score = fall(above);
+      score *= fall(below);
+    }
     if (score <= best_score) continue;
     best_score = score;
-    result.first = above;
-    result.second = below;
+    result = {.first = {above}, .second = {below}};
   }
   return result;
 }
 
-// An Eulerian trail of the part that hangs together with the start [Hierholzer 1873].
+// An Eulerian trail of the start's component [Hierholzer 1873].
 std::vector<NodeId> WalkRelaxation::walk() const {
   std::vector<int> left;
   for (const Arc& arc : arcs_) left.push_back(static_cast<int>(std::llround(uses(arc))));

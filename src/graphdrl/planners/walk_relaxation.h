@@ -1,23 +1,23 @@
 // The linear relaxation of all walks that a task allows, tightened by cutting planes as in branch and cut for the
 // orienteering problem [Fischetti, Salazar González and Toth 1998], on the edges of the graph itself.
 //
-// Columns: y[v] in [0, 1], node v is visited; z[v] in [0, 1], the walk ends there. In an undirected graph a best walk
-// uses an edge twice at most, for two uses less leave it connected and the degrees' parity as it was: u[e], edge e is
-// used once; w[e], twice. In a directed graph x[a], how often an arc is used.
+// Columns: y[v] in [0, 1], node v is visited; z[v] in [0, 1], the walk ends there. In an undirected graph u[e], edge e
+// is used once; w[e], twice. No best walk uses it more often: two uses less keep it connected and its degrees' parity.
+// In a directed graph x[a], how often an arc is used.
 //
 // Rows, with s the start, S a set of nodes without s, and x = u + 2 w:
-//   cost        sum of c x <= budget, rounded down to what costs can add up to; less where it could not be spent in
-//               full on a walk that ends there, for in a bipartite graph its end says whether its cost is odd
+//   cost        sum of c x <= budget, rounded down to what costs can add up to; where, by parity,
+//               no walk that ends at v costs exactly that, a step less for v
 //   ends        sum of z = 1, z[v] <= y[v]
 //   degrees     x(δ(v)) + z[v] >= 2 y[v]; directed: x(in(v)) >= y[v], and as often out of v as into it
 //   edges       u[e] + w[e] <= y[v] for both its nodes
 //   connection  x(δ(S)) + z(S) >= 2 y[v] for v in S; directed: x(in(S)) >= y[v]
 //   blocks      y[v] <= y[r], where r parts v's block from the start
-//   partition   u + w of all edges between the parts V0, V1 … Vk of V >= y[v1] + … + y[vk], with s in V0, vi in Vi
-//   parity      u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1) for any F in δ(S): of the u of δ(S) and z(S), an even
-//               number is 1
-// Degrees, cost and ends are there from the beginning. The others are added once a solution violates them: connection
-// by maximum flows from each node to the start, parity for components of the edges with a fraction.
+//   partition   (u + w)(edges between V0, V1 … Vk) >= y[v1] + … + y[vk], for parts of V with s in V0 and vi in Vi
+//   parity      u(F) - u(δ(S) \ F) -+ z(S) <= |F| - (0 or 1) for any F in δ(S): of the u in δ(S) and z(S),
+//               an even number is 1
+// Cost, degrees and the sum of ends are rows from the beginning, the others once a solution violates them: connection
+// by maximum flows from each node to the start, parity for components of fractional edges.
 #pragma once
 
 #include <functional>
@@ -46,7 +46,7 @@ class WalkRelaxation {
   explicit WalkRelaxation(const Task& task);
 
   LinearProgram& program() { return program_; }
-  // Up to now: LinearProgram::work(), and as much for maximum flows as takes as long.
+  // Up to now, in the unit of LinearProgram::work(), maximum flows included.
   std::int64_t work() const { return program_.work() + scanned_ / kArcsPerWork; }
   // Prizes add up to multiples of it; 0 where nothing is known.
   double prize_step() const { return prize_step_; }
@@ -57,7 +57,8 @@ class WalkRelaxation {
   int separate(const Clock& clock);
   // Of the last solution.
   bool integral() const;
-  // Two parts without the last solution, which together hold every walk. REQUIRES: it is optimal and not integral.
+  // Two parts without the last solution, which together hold every walk: first by ends, then by a visit or an edge.
+  // REQUIRES: the solution is optimal and not integral.
   Branches branches();
   // The walk that an integral solution is, once it violates no row.
   std::vector<NodeId> walk() const;
@@ -74,6 +75,9 @@ class WalkRelaxation {
   void add_rows(const Task& task);
   std::vector<bool> odd_ends(double step, double budget) const;
   void add_links();
+  Branches halve_ends() const;
+  std::vector<int> least_integral_columns() const;
+  Branches split_a_column();
 
   double value(int column) const { return column < 0 ? 0 : program_.values()[column]; }
   double uses(const Arc& arc) const;
