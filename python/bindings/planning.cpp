@@ -26,9 +26,9 @@ Asked asked_of(const World& world, const std::optional<std::string>& budget, std
   return asked;
 }
 
-PlanReport plan(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
-                const std::optional<AskedEnd>& end, const std::string& policy, const nb::object& own,
-                std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress) {
+Answer plan(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
+            const std::optional<AskedEnd>& end, const std::string& policy, const nb::object& own,
+            std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress) {
   const Task task(world, asked_of(world, budget, start, end));
   PlanRequest request{.policy = policy, .seed = seed};
   if (!own.is_none()) {
@@ -36,7 +36,7 @@ PlanReport plan(const World& world, const std::optional<std::string>& budget, st
     request.own_planner = chosen.planner;
     request.own_policy = chosen.policy;
   }
-  std::optional<PlanReport> answer;
+  std::optional<Answer> answer;
   run_planning(time_limit, on_progress, [&](const Clock& clock) { answer = make_plan(world, task, request, clock); });
   return std::move(*answer);
 }
@@ -50,7 +50,7 @@ double upper_bound(const World& world, const std::optional<std::string>& budget,
 }
 
 // What pickles keep beside the world and the walk.
-nb::dict claims_of(const PlanReport& report) {
+nb::dict claims_of(const Answer& report) {
   nb::dict claims;
   claims["budget"] = report.task.budget();
   claims["end"] = report.task.end();
@@ -62,19 +62,19 @@ nb::dict claims_of(const PlanReport& report) {
   return claims;
 }
 
-PlanReport restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, const nb::dict& claims) {
+Answer restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, const nb::dict& claims) {
   std::vector<NodeId> nodes(walk.data(), walk.data() + walk.size());
   if (nodes.empty()) throw Error({.what = "the walk is empty", .where = world.name()});
   for (const NodeId node : nodes) checked_node(world, node, "a step");
   const auto end = nb::cast<NodeId>(claims["end"]);
   const Task task(world, nodes.front(), nb::cast<double>(claims["budget"]),
                   end == kNoNode ? End::anywhere() : End::at(end));
-  PlanReport report{.world = world,
-                    .task = task,
-                    .policy = nb::cast<std::string>(claims["policy"]),
-                    .plan = plan_of_walk(task, std::move(nodes), nb::cast<bool>(claims["optimal"])),
-                    .unreachable = nb::cast<int>(claims["unreachable"]),
-                    .elapsed_s = nb::cast<double>(claims["elapsed_s"])};
+  Answer report{.world = world,
+                .task = task,
+                .policy = nb::cast<std::string>(claims["policy"]),
+                .plan = plan_of_walk(task, std::move(nodes), nb::cast<bool>(claims["optimal"])),
+                .unreachable = nb::cast<int>(claims["unreachable"]),
+                .elapsed_s = nb::cast<double>(claims["elapsed_s"])};
   report.plan.bound = nb::cast<double>(claims["bound"]);
   return report;
 }
@@ -82,29 +82,29 @@ PlanReport restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk,
 }  // namespace
 
 void bind_planning(nb::module_& module) {
-  nb::class_<PlanReport>(module, "PlanReport", "A task answered: its plan and its bound. Nodes are numbers.")
+  nb::class_<Answer>(module, "Answer", "A task answered: its plan and its bound. Nodes are numbers.")
       .def_static("restore", &restore, nb::arg("world"), nb::arg("walk"), nb::arg("claims"))
       .def_prop_ro("claims", &claims_of)
       .def_prop_ro(
-          "walk", [](const PlanReport& report) { return to_numpy(report.plan.walk); }, nb::rv_policy::automatic)
+          "walk", [](const Answer& report) { return to_numpy(report.plan.walk); }, nb::rv_policy::automatic)
       .def_prop_ro(
-          "costs", [](const PlanReport& report) { return to_numpy(costs_so_far(report)); }, nb::rv_policy::automatic)
-      .def_prop_ro("visited", [](const PlanReport& report) { return report.plan.visited; })
-      .def_prop_ro("prize", [](const PlanReport& report) { return report.plan.prize; })
-      .def_prop_ro("cost", [](const PlanReport& report) { return report.plan.cost; })
-      .def_prop_ro("bound", [](const PlanReport& report) { return report.plan.bound; })
-      .def_prop_ro("optimal", [](const PlanReport& report) { return report.plan.optimal; })
-      .def_prop_ro("budget", [](const PlanReport& report) { return report.task.budget(); })
-      .def_prop_ro("end", [](const PlanReport& report) { return report.task.end(); })
-      .def_prop_ro("policy", [](const PlanReport& report) { return report.policy; })
-      .def_prop_ro("elapsed_s", [](const PlanReport& report) { return report.elapsed_s; })
-      .def_prop_ro("summary", [](const PlanReport& report) { return plan_summary(report); })
-      .def("json", [](const PlanReport& report) { return plan_json(report).dump(); })
+          "costs", [](const Answer& report) { return to_numpy(costs_so_far(report)); }, nb::rv_policy::automatic)
+      .def_prop_ro("visited", [](const Answer& report) { return report.plan.visited; })
+      .def_prop_ro("prize", [](const Answer& report) { return report.plan.prize; })
+      .def_prop_ro("cost", [](const Answer& report) { return report.plan.cost; })
+      .def_prop_ro("bound", [](const Answer& report) { return report.plan.bound; })
+      .def_prop_ro("optimal", [](const Answer& report) { return report.plan.optimal; })
+      .def_prop_ro("budget", [](const Answer& report) { return report.task.budget(); })
+      .def_prop_ro("end", [](const Answer& report) { return report.task.end(); })
+      .def_prop_ro("policy", [](const Answer& report) { return report.policy; })
+      .def_prop_ro("elapsed_s", [](const Answer& report) { return report.elapsed_s; })
+      .def_prop_ro("summary", [](const Answer& report) { return plan_summary(report); })
+      .def("json", [](const Answer& report) { return plan_json(report).dump(); })
       .def("svg",
-           [](const PlanReport& report) {
+           [](const Answer& report) {
              return Picture(report.world, report.plan.walk, report.world.name(), plan_summary(report)).svg();
            })
-      .def("save", [](const PlanReport& report, const std::string& file) {
+      .def("save", [](const Answer& report, const std::string& file) {
         check_plan_file(report.world, file);
         write_plan(report, file);
       });

@@ -24,7 +24,7 @@ class Plan:
 
     __slots__ = ("_core", "world")
 
-    def __init__(self, world: World, core: _core.PlanReport) -> None:
+    def __init__(self, world: World, core: _core.Answer) -> None:
         self.world = world
         self._core = core
 
@@ -125,7 +125,7 @@ class Plan:
 
 
 def _restore(world: World, walk: NDArray[np.int32], claims: tuple[Any, ...]) -> Plan:
-    return Plan(world, _core.PlanReport.restore(world._core, walk, claims))
+    return Plan(world, _core.Answer.restore(world._core, walk, claims))
 
 
 def _end(world: World, end: Node | None) -> int | str | None:

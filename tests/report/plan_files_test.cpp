@@ -22,16 +22,16 @@ World labelled_world() {
                {.points = {{0, 0}, {0, 2}, {-1, 2}}, .unit = "m"});
 }
 
-PlanReport report_of(const World& world, std::vector<NodeId> walk) {
+Answer report_of(const World& world, std::vector<NodeId> walk) {
   const Task task(world, walk.front(), 10);
-  PlanReport report{.world = world, .task = task, .policy = "search", .plan = plan_of_walk(task, std::move(walk))};
+  Answer report{.world = world, .task = task, .policy = "search", .plan = plan_of_walk(task, std::move(walk))};
   report.plan.bound = 3;
   return report;
 }
 
 class PlanFiles : public ::testing::Test {
  protected:
-  std::string written(const PlanReport& report, const std::string& name) {
+  std::string written(const Answer& report, const std::string& name) {
     write_plan(report, (folder_ / name).string());
     return read_file(folder_ / name);
   }
@@ -66,7 +66,7 @@ TEST_F(PlanFiles, GeoJsonHasALineAndThePoints) {
 }
 
 TEST_F(PlanFiles, GraphsHaveTheOrderOfVisits) {
-  const PlanReport report = report_of(labelled_world(), {0, 1, 0});
+  const Answer report = report_of(labelled_world(), {0, 1, 0});
   EXPECT_THAT(written(report, "a.graphml"), HasSubstr("<data key=\"visit_order\">1</data>"));
   EXPECT_THAT(written(report, "a.dot"),
               HasSubstr("1 [label=\"7\", pos=\"0,2\", visit_order=\"1\"];\n  2 [label=\"<c>\", pos"));
@@ -82,7 +82,7 @@ TEST_F(PlanFiles, RefuseWhatTheyCannotHold) {
 
 TEST_F(PlanFiles, WalksAreReadBack) {
   const World world = labelled_world();
-  const PlanReport report = report_of(world, {0, 1, 2, 1});
+  const Answer report = report_of(world, {0, 1, 2, 1});
   for (const char* const name : {"a.csv", "a.json"}) {
     written(report, name);
     EXPECT_THAT(read_plan(world, (folder_ / name).string()).plan.walk, ElementsAre(0, 1, 2, 1)) << name;

@@ -18,7 +18,7 @@ nlohmann::json data_of(const ReportPage& page) {
   return nlohmann::json::parse(page.data());
 }
 
-PlanReport report_on(const World& world, std::vector<NodeId> walk, double budget) {
+Answer report_on(const World& world, std::vector<NodeId> walk, double budget) {
   const Task task(world, walk.front(), budget);
   return {.world = world, .task = task, .policy = "mine", .plan = plan_of_walk(task, std::move(walk))};
 }
@@ -67,7 +67,7 @@ TEST(ReportPage, KnowsEdgesPlacesAndCosts) {
   const std::vector<Edge> edges = {{0, 1, 2.5}, {1, 2, 1}};
   const World world("map", Graph::from_edges(3, edges), std::vector<bool>(3), {}, {1, 2, 5}, {},
                     {.points = {{0, 0}, {0, 2}, {-1, 2}}, .unit = "m"});
-  PlanReport report = report_on(world, {0, 1, 2}, 4);
+  Answer report = report_on(world, {0, 1, 2}, 4);
   report.plan.bound = 6;
   ReportPage page("Graph");
   page.add_plan(report);

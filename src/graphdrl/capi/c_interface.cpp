@@ -100,8 +100,8 @@ struct graphdrl_world final : graphdrl::Handle {
 };
 
 struct graphdrl_result final : graphdrl::Handle {
-  explicit graphdrl_result(graphdrl::PlanReport made) : report(std::move(made)) {}
-  graphdrl::PlanReport report;
+  explicit graphdrl_result(graphdrl::Answer made) : report(std::move(made)) {}
+  graphdrl::Answer report;
   mutable std::once_flag json_made;
   mutable std::string json;
 };

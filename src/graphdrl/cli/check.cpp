@@ -22,13 +22,13 @@ struct CheckOptions {
   bool json = false;
 };
 
-PlanReport check(const World& world, const CheckOptions& options) {
+Answer check(const World& world, const CheckOptions& options) {
   // Options first, then what the map says, then what the walk's file says.
   Asked asked = asked_of(world, {.budget = options.budget, .end = options.end});
   const GivenTask& given = world.given();
   if (!asked.budget && given.budget) asked.budget = Budget(*given.budget);
   if (!asked.end && given.end != kNoNode) asked.end = End::at(given.end);
-  PlanReport report = read_plan(world, options.walk, asked);
+  Answer report = read_plan(world, options.walk, asked);
   check_walk(report, options.walk);
   report.plan.bound = kNoLimit;
   report.plan.optimal = false;
@@ -39,7 +39,7 @@ PlanReport check(const World& world, const CheckOptions& options) {
 void run_check(const CheckOptions& options) {
   const World world = load_one_world(options.map, options.reading);
   for (const std::string& file : options.out) check_plan_file(world, file);
-  const PlanReport report = check(world, options);
+  const Answer report = check(world, options);
   for (const std::string& file : options.out) write_plan(report, file);
   if (options.json) {
     print_json(plan_json(report));

@@ -7,13 +7,13 @@
 #include <memory>
 #include <optional>
 
+#include "graphdrl/answer/least_budget.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
-#include "graphdrl/answer/least_budget.h"
 #include "graphdrl/graph/components.h"
 #include "graphdrl/graph/search.h"
 #include "graphdrl/io/ascii_map.h"
@@ -153,7 +153,8 @@ std::string info_text(const MapInfo& info) {
     const auto loops = all->loops();
     const auto parallel = all->parallel_edges(graph);
     if (loops + parallel > 0) {
-      text += fmt::format("  besides  {} loops and {} parallel edges, which no walk over nodes needs\n", loops, parallel);
+      text +=
+          fmt::format("  besides  {} loops and {} parallel edges, which no walk over nodes needs\n", loops, parallel);
     }
   }
   if (world.has_cells()) text += fmt::format("  cells    {} rows, {} columns\n", world.map()->rows, world.map()->cols);

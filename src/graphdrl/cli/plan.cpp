@@ -64,7 +64,7 @@ std::string as_comments(std::string_view text) {
   return commented;
 }
 
-std::string format_plan(const PlanReport& answer, const PlanOptions& options) {
+std::string format_plan(const Answer& answer, const PlanOptions& options) {
   const World& world = answer.world;
   const std::vector<NodeId>& walk = answer.plan.walk;
   std::string text = fmt::format("{}, {} from {}", world.name(), answer.policy, name_of(world, walk.front()));
@@ -106,8 +106,7 @@ void plan(const PlanOptions& options) {
   stop_planning_on_signals();
   PlanDisplay display(world);
   const ProgressListener listener = [&](const Progress& progress) { display.show(progress); };
-  const PlanReport answer =
-      make_plan(world, task, options.request, Clock(options.time_limit_s, &plan_stopped, &listener));
+  const Answer answer = make_plan(world, task, options.request, Clock(options.time_limit_s, &plan_stopped, &listener));
   for (const std::string& file : options.out) write_plan(answer, file);
   if (options.json) {
     print_json(plan_json(answer));

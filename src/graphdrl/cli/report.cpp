@@ -61,7 +61,7 @@ ReportPage make_page(const ReportOptions& options, const std::optional<World>& w
     } else if (const auto evaluation = read_evaluation(input)) {
       page.add_evaluation(names.name(input), *evaluation);
     } else if (world) {
-      const PlanReport plan = read_plan(*world, input);
+      const Answer plan = read_plan(*world, input);
       check_walk(plan, input);
       page.add_plan(plan, options.scores.empty() ? std::nullopt : std::optional(scores_along(plan, options.scores)));
     } else {

@@ -9,12 +9,12 @@
 namespace graphdrl {
 namespace {
 
-void follow(const PlanReport& report, const std::function<void(const Observation&)>& at_node) {
+void follow(const Answer& report, const std::function<void(const Observation&)>& at_node) {
   Episode episode(report.world, report.task, {.action_space = action_space_of(report.world)});
   follow_walk(episode, report.plan.walk, at_node);
 }
 
-MoveScores shortfalls_along(const PlanReport& report, SharedExplorer explorer) {
+MoveScores shortfalls_along(const Answer& report, SharedExplorer explorer) {
   MoveScores scores{.name = "expected shortfall", .lower_is_better = true, .steps = {}};
   ExplorerScorer scorer(std::move(explorer));
   NodeSet ground(report.world.node_count());
@@ -32,7 +32,7 @@ MoveScores shortfalls_along(const PlanReport& report, SharedExplorer explorer) {
   return scores;
 }
 
-MoveScores q_values_along(const PlanReport& report, PaperPolicy policy) {
+MoveScores q_values_along(const Answer& report, PaperPolicy policy) {
   MoveScores scores{.name = "Q-value", .steps = {}};
   follow(report, [&](const Observation& observation) {
     std::array<float, kActionCount> q = {};
@@ -47,7 +47,7 @@ MoveScores q_values_along(const PlanReport& report, PaperPolicy policy) {
 
 }  // namespace
 
-MoveScores scores_along(const PlanReport& report, const std::string& policy) {
+MoveScores scores_along(const Answer& report, const std::string& policy) {
   TrainedPolicy trained = read_policy(policy);
   if (auto* const explorer = std::get_if<SharedExplorer>(&trained)) return shortfalls_along(report, *explorer);
   return q_values_along(report, PaperPolicy(std::get<PaperParameters>(std::move(trained))));

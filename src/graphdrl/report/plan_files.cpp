@@ -31,7 +31,7 @@ std::string label_of(const World& world, NodeId node) {
 }
 
 // The step at which each node was first visited; empty if never.
-std::vector<std::string> visit_order(const PlanReport& report) {
+std::vector<std::string> visit_order(const Answer& report) {
   std::vector<std::string> order(report.world.node_count());
   const std::vector<NodeId>& walk = report.plan.walk;
   for (std::size_t step = 0; step < walk.size(); ++step) {
@@ -51,7 +51,7 @@ std::string csv(const std::string& text) {
   return quoted + '"';
 }
 
-std::string plan_csv(const PlanReport& report) {
+std::string plan_csv(const Answer& report) {
   const World& world = report.world;
   const bool labels = !world.labels().empty();
   const bool cells = world.has_cells();
@@ -100,16 +100,16 @@ GraphMap graph_of(const World& world) {
   return world.to_map();
 }
 
-std::string plan_graphml(const PlanReport& report) {
+std::string plan_graphml(const Answer& report) {
   return format_graphml(graph_of(report.world), {.name = "visit_order", .values = visit_order(report)});
 }
 
-std::string plan_dot(const PlanReport& report) {
+std::string plan_dot(const Answer& report) {
   return format_dot(graph_of(report.world), {.name = "visit_order", .values = visit_order(report)});
 }
 
 // A line, and a point for every valid node [RFC 7946].
-std::string plan_geojson(const PlanReport& report) {
+std::string plan_geojson(const Answer& report) {
   const World& world = report.world;
   const auto position = [&](NodeId node) { return Json::array({world.place(node).x, world.place(node).y}); };
   Json line = Json::array();
@@ -138,7 +138,7 @@ std::string plan_geojson(const PlanReport& report) {
 
 // A message nav_msgs/Path [docs.ros.org], as `rostopic pub -f` and `ros2 topic pub` take it. Every pose faces the
 // next one.
-std::string plan_ros_path(const PlanReport& report) {
+std::string plan_ros_path(const Answer& report) {
   std::string text = "header:\n  frame_id: map\nposes:\n";
   const std::vector<NodeId>& walk = report.plan.walk;
   double heading = 0;
@@ -157,39 +157,39 @@ std::string plan_ros_path(const PlanReport& report) {
   return text;
 }
 
-std::string title_of(const PlanReport& report) {
+std::string title_of(const Answer& report) {
   return fmt::format("{}, {}", report.world.name().substr(0, kLongestTitle), report.policy);
 }
 
-Picture picture_of(const PlanReport& report) {
+Picture picture_of(const Answer& report) {
   return Picture(report.world, report.plan.walk, title_of(report), plan_summary(report));
 }
 
-std::string plan_svg(const PlanReport& report) {
+std::string plan_svg(const Answer& report) {
   return picture_of(report).svg();
 }
 
-std::string plan_moving_svg(const PlanReport& report) {
+std::string plan_moving_svg(const Answer& report) {
   return picture_of(report).moving_svg();
 }
 
-std::string plan_png(const PlanReport& report) {
+std::string plan_png(const Answer& report) {
   return picture_of(report).png();
 }
 
-std::string plan_html(const PlanReport& report) {
+std::string plan_html(const Answer& report) {
   ReportPage page(title_of(report));
   page.add_plan(report);
   return page.html();
 }
 
-std::string plan_json_text(const PlanReport& report) {
+std::string plan_json_text(const Answer& report) {
   return plan_json(report).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 struct PlanFormat {
   std::string_view ending;
-  std::string (*format)(const PlanReport& report);
+  std::string (*format)(const Answer& report);
   bool needs_coordinates = false;
 };
 
@@ -217,7 +217,7 @@ const PlanFormat& format_for(const std::string& file) {
 
 }  // namespace
 
-std::vector<double> costs_so_far(const PlanReport& report) {
+std::vector<double> costs_so_far(const Answer& report) {
   const Graph& open = report.world.open();
   std::vector<double> costs = {0};
   const std::vector<NodeId>& walk = report.plan.walk;
@@ -228,7 +228,7 @@ std::vector<double> costs_so_far(const PlanReport& report) {
   return costs;
 }
 
-nlohmann::ordered_json plan_json(const PlanReport& report) {
+nlohmann::ordered_json plan_json(const Answer& report) {
   const World& world = report.world;
   const Plan& plan = report.plan;
   Json json;
@@ -283,7 +283,7 @@ void check_plan_file(const World& world, const std::string& file) {
   throw Error({.what = fmt::format("{} needs coordinates, and the map has none", format.ending), .where = file});
 }
 
-void write_plan(const PlanReport& report, const std::string& file) {
+void write_plan(const Answer& report, const std::string& file) {
   check_plan_file(report.world, file);
   write_file(file, format_for(file).format(report));
 }

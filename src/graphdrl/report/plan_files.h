@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "graphdrl/answer/plan_report.h"
+#include "graphdrl/answer/answer.h"
 
 namespace graphdrl {
 
 // The document that `graphdrl plan --json` prints.
-nlohmann::ordered_json plan_json(const PlanReport& report);
+nlohmann::ordered_json plan_json(const Answer& report);
 
 // The cost so far at every node of the walk.
-std::vector<double> costs_so_far(const PlanReport& report);
+std::vector<double> costs_so_far(const Answer& report);
 
 // The walk, a node a line below a header: node ids, with the labels beside them. read_plan() reads it.
 std::string format_walk(const World& world, std::span<const NodeId> walk);
@@ -25,23 +25,23 @@ std::string format_walk(const World& world, std::span<const NodeId> walk);
 void check_plan_file(const World& world, const std::string& file);
 
 // Writes a plan in the format of the file's ending. Throws Error.
-void write_plan(const PlanReport& report, const std::string& file);
+void write_plan(const Answer& report, const std::string& file);
 
 // The endings, for help texts.
 std::string plan_file_endings();
 
 // A plan from a file: the document above, an array of node ids, or lines. Lines have a node each: the first field of
 // CSV or, below a header, the column `node`, `id` or `label`; a single line without a header has the whole walk. Nodes
-// are named as for parse_node(). Budget and end are what is asked, else what the document says, else what the walk costs
-// and anywhere; policy and bound what the document says, else the file's name and none. Throws Error, naming the file
-// and the line, also where a step follows no edge, and where several lines of several words leave open which of them
-// are nodes.
-PlanReport read_plan(const World& world, const std::string& file, const Asked& asked = {});
+// are named as for parse_node(). Budget and end are what is asked, else what the document says, else what the walk
+// costs and anywhere; policy and bound what the document says, else the file's name and none. Throws Error, naming the
+// file and the line, also where a step follows no edge, and where several lines of several words leave open which of
+// them are nodes.
+Answer read_plan(const World& world, const std::string& file, const Asked& asked = {});
 
 // The same for a text; `file` is for error messages.
-PlanReport parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked = {});
+Answer parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked = {});
 
 // Throws Error, naming `file`, if the plan's walk costs more than the task's budget or does not end where it must.
-void check_walk(const PlanReport& report, const std::string& file);
+void check_walk(const Answer& report, const std::string& file);
 
 }  // namespace graphdrl

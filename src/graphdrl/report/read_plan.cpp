@@ -116,7 +116,7 @@ Asked read_task(const World& world, const nlohmann::json& document, const std::s
 }
 
 // What it says of the plan.
-void read_claims(const World& world, const nlohmann::json& document, PlanReport& report) {
+void read_claims(const World& world, const nlohmann::json& document, Answer& report) {
   if (const auto policy = document.find("policy"); policy != document.end() && policy->is_string()) {
     report.policy = *policy;
   }
@@ -127,11 +127,11 @@ void read_claims(const World& world, const nlohmann::json& document, PlanReport&
 
 }  // namespace
 
-PlanReport read_plan(const World& world, const std::string& file, const Asked& asked) {
+Answer read_plan(const World& world, const std::string& file, const Asked& asked) {
   return parse_plan(world, read_file(file), file, asked);
 }
 
-PlanReport parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked) {
+Answer parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
   const nlohmann::json document = is_json ? parse_json(text, file) : nlohmann::json();
@@ -146,12 +146,12 @@ PlanReport parse_plan(const World& world, const std::string& text, const std::st
   const Task task(
       world,
       {.budget = budget.value_or(Budget(plan.cost)), .start = plan.walk.front(), .end = end.value_or(End::anywhere())});
-  PlanReport report{.world = world, .task = task, .policy = file, .plan = std::move(plan)};
+  Answer report{.world = world, .task = task, .policy = file, .plan = std::move(plan)};
   if (document.is_object()) read_claims(world, document, report);
   return report;
 }
 
-void check_walk(const PlanReport& report, const std::string& file) {
+void check_walk(const Answer& report, const std::string& file) {
   const Task& task = report.task;
   if (report.plan.cost > task.limit()) {
     throw Error({.what = "the walk costs more than the budget",

@@ -67,7 +67,7 @@ Json world_json(const World& world) {
   return json;
 }
 
-Json plan_of(const PlanReport& report) {
+Json plan_of(const Answer& report) {
   Json json = {{"policy", report.policy},
                {"walk", report.plan.walk},
                {"visited", report.plan.visited},
@@ -138,7 +138,7 @@ ReportPage::ReportPage(const std::string& title, bool watch)
                  {"runs", Json::array()},
                  {"evaluations", Json::array()}}) {}
 
-void ReportPage::add_plan(const PlanReport& report, const std::optional<MoveScores>& scores) {
+void ReportPage::add_plan(const Answer& report, const std::optional<MoveScores>& scores) {
   Json& replays = document_["replays"];
   Json* replay = nullptr;
   for (Json& one : replays) {

@@ -18,7 +18,7 @@ class ReportPage {
   explicit ReportPage(const std::string& title, bool watch = false);
 
   // Plans on one world are shown together, two of them side by side.
-  void add_plan(const PlanReport& report, const std::optional<MoveScores>& scores = {});
+  void add_plan(const Answer& report, const std::optional<MoveScores>& scores = {});
 
   // The curves of a run: the lines of its metrics.jsonl. Ignores a last line that is still being written. Throws Error.
   void add_run(const std::string& name, const std::filesystem::path& folder);

@@ -1,4 +1,4 @@
-#include "graphdrl/answer/plan_report.h"
+#include "graphdrl/answer/answer.h"
 
 #include <fmt/format.h>
 
@@ -52,11 +52,11 @@ void check_plan(const World& world, const Task& task, const Plan& plan) {
 
 }  // namespace
 
-PlanReport make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
+Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
   const Stopwatch watch;
   const Clock bound_clock = clock.share(kBoundShare);
   const Clock plan_clock = clock.share(kPlanShare);
-  PlanReport answer{.world = world, .task = task, .policy = request.policy, .plan = {}};
+  Answer answer{.world = world, .task = task, .policy = request.policy, .plan = {}};
   std::unique_ptr<Planner> planner;
   std::unique_ptr<Policy> policy;
   if (request.own_planner) {
@@ -79,7 +79,7 @@ PlanReport make_plan(const World& world, const Task& task, const PlanRequest& re
   return answer;
 }
 
-std::vector<std::string> plan_summary(const PlanReport& report) {
+std::vector<std::string> plan_summary(const Answer& report) {
   const World& world = report.world;
   const Plan& plan = report.plan;
   std::string length;

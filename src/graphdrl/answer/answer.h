@@ -13,7 +13,7 @@
 namespace graphdrl {
 
 // A plan, and what is said beside it.
-struct PlanReport {
+struct Answer {
   World world;
   Task task;
   std::string policy;  // as users name it
@@ -26,8 +26,8 @@ struct PlanReport {
 };
 
 struct PlanRequest {
-  std::string policy = "search";  // as parse_policy() takes it
-  std::uint64_t seed = 1;         // of `search` and of random policies
+  std::string policy = "search";                // as parse_policy() takes it
+  std::uint64_t seed = 1;                       // of `search` and of random policies
   std::optional<std::int64_t> iterations = {};  // of `search`, instead of those in its name
   // One of these instead of a policy that has a name here; `policy` is then what it is called.
   std::function<std::unique_ptr<Planner>()> own_planner = {};
@@ -35,9 +35,9 @@ struct PlanRequest {
 };
 
 // Plans one walk and bounds it, both until the clock passes. Throws Error on a policy that there is not.
-PlanReport make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock = {});
+Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock = {});
 
 // A few lines, for people: what the walk visits, what it is worth and costs, and the bound.
-std::vector<std::string> plan_summary(const PlanReport& report);
+std::vector<std::string> plan_summary(const Answer& report);
 
 }  // namespace graphdrl
