@@ -30,6 +30,7 @@ PolicySpec spec_of(const PlanRequest& request) {
                  .got = fmt::format("{}", *request.iterations)});
   }
   spec.iterations = *request.iterations;
+  spec.label = fmt::format("search:{}", spec.iterations);
   return spec;
 }
 

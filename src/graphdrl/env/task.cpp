@@ -29,8 +29,9 @@ void check_node(const View& view, NodeId node, const char* role) {
 double budget_of(const World& world, const std::optional<Budget>& asked) {
   if (asked) return asked->cost_in(world);
   if (world.given().budget) return *world.given().budget;
-  throw Error(
-      {.what = "no budget is given", .expected = "one asked for, or one of the map's file", .where = world.name()});
+  throw Error({.what = "no budget is given",
+               .expected = "one asked for, as --budget 25, or one of the map's file",
+               .where = world.name()});
 }
 
 NodeId start_of(const World& world, const std::optional<NodeId>& asked) {
