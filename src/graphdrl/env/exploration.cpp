@@ -21,6 +21,17 @@ void Exploration::make(const FirstVisit& visit, NodeSet& ground) {
   spendable_ -= visit.cost;
 }
 
+bool find_way(const Graph& open, NodeId from, NodeId goal, const NodeSetView& ground, NearestFirst& search) {
+  using Next = NearestFirst::Next;
+  bool found = false;
+  search.run(open, from, kNoLimit, [&](NodeId node, double) {
+    found = node == goal;
+    if (found) return Next::kEnd;
+    return ground.contains(node) ? Next::kThrough : Next::kPast;
+  });
+  return found;
+}
+
 double change_of_penalties(const View& view, const NodeSetView& ground, NodeId node) {
   double change = -leftover_penalty(unvisited_neighbours_up_to_three(view, ground, node));
   for (const NodeId other : view.into().neighbours(node)) {

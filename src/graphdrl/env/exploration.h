@@ -64,6 +64,10 @@ class Exploration {
   double spendable_;
 };
 
+// Looks for the cheapest way through ground from a node to another, which need be no ground itself. False where there is
+// none. REQUIRES: they are not the same. search.append_path_to(goal, walk) is the way.
+bool find_way(const Graph& open, NodeId from, NodeId goal, const NodeSetView& ground, NearestFirst& search);
+
 // What an unvisited node is likely to cost on top of one step, in mean edges, by its unvisited neighbours: one without
 // any must be left again by the way one came; one with a single neighbour is a dead end. Of fourteen pairs of penalties
 // tried, the one by which a beam visits most on random 11×11 mazes at 1.0x.

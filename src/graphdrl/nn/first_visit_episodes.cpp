@@ -58,13 +58,9 @@ Episodes::Outcome FirstVisitEpisodes::take(int index, Episode& episode, int acti
 
 // Without the current node.
 std::vector<NodeId> FirstVisitEpisodes::way_to(Memory& memory, const Episode& episode, NodeId target) {
-  memory.search.run(episode.world().open(), episode.position(), kNoLimit, [&](NodeId node, double) {
-    if (node == target) return NearestFirst::Next::kEnd;
-    return memory.visited.contains(node) ? NearestFirst::Next::kThrough : NearestFirst::Next::kPast;
-  });
-  std::vector<NodeId> walk = {episode.position()};
+  find_way(episode.world().open(), episode.position(), target, memory.visited, memory.search);
+  std::vector<NodeId> walk;
   memory.search.append_path_to(target, walk);
-  walk.erase(walk.begin());
   return walk;
 }
 

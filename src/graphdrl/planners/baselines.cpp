@@ -108,16 +108,7 @@ class DepthFirstWalk {
   }
 
   // Looks for the cheapest way through visited ground; false where there is none.
-  bool way_to(NodeId goal) {
-    bool found = goal == walk_.back();
-    if (found) return true;
-    search_.run(open_, walk_.back(), kNoLimit, [&](NodeId node, double) {
-      if (!visited_.contains(node)) return NearestFirst::Next::kPast;
-      found = node == goal;
-      return found ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
-    });
-    return found;
-  }
+  bool way_to(NodeId goal) { return goal == walk_.back() || find_way(open_, walk_.back(), goal, visited_, search_); }
 
   const Task& task_;
   const Graph& open_;

@@ -43,14 +43,10 @@ Plan Planner::plan_from(const Task& task, Plan known, const Clock& clock) {
 }
 
 std::vector<NodeId> walk_through(const Task& task, std::span<const NodeId> first_visits, NearestFirst& search) {
-  using Next = NearestFirst::Next;
   std::vector<NodeId> walk = {task.start()};
   NodeSet visited = task.ground();
   for (const NodeId target : first_visits) {
-    search.run(task.view().open(), walk.back(), kNoLimit, [&](NodeId node, double) {
-      if (node == target) return Next::kEnd;
-      return visited.contains(node) ? Next::kThrough : Next::kPast;
-    });
+    find_way(task.view().open(), walk.back(), target, visited, search);
     search.append_path_to(target, walk);
     visited.insert(target);
   }
