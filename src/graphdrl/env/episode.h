@@ -68,9 +68,7 @@ class Episode {
 
   // The walk has kMaxSteps steps, or goes round for nothing: its last kFreeMovesPerNode · N moves cost nothing and
   // visited nothing new. Only done() heeds this: a walk that is given may be followed farther.
-  bool too_long() const {
-    return std::ssize(walk_) > kMaxSteps || free_moves_ >= most_free_moves_;
-  }
+  bool too_long() const { return std::ssize(walk_) > kMaxSteps || free_moves_ >= most_free_moves_; }
 
   // Reached full coverage with end_at_full_coverage: nothing follows. A spent budget is no terminal state, only a
   // truncation: eq. 5 bootstraps there.

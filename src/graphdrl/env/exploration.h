@@ -64,8 +64,8 @@ class Exploration {
   double spendable_;
 };
 
-// Looks for the cheapest way through ground from a node to another, which need be no ground itself. False where there is
-// none. REQUIRES: they are not the same. search.append_path_to(goal, walk) is the way.
+// Looks for the cheapest way through ground from a node to another, which need be no ground itself. False if there is
+// none. search.append_path_to(goal, walk) appends it. REQUIRES: from != goal.
 bool find_way(const Graph& open, NodeId from, NodeId goal, const NodeSetView& ground, NearestFirst& search);
 
 // What an unvisited node is likely to cost on top of one step, in mean edges, by its unvisited neighbours: one without
