@@ -76,6 +76,7 @@ class Episode {
 
   const World& world() const { return world_; }
   const Task& task() const { return task_; }
+  const View& view() const { return task_.view(); }  // what policies may see of the world
   Observation observation() const;
   NodeId position() const { return position_; }
   const std::vector<std::uint32_t>& visits() const { return visits_; }

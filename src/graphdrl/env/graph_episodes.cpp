@@ -18,9 +18,9 @@ float flag(bool value) {
   return value ? 1.0f : 0.0f;
 }
 
-float prize_of(const World& world, NodeId node) {
-  const double mean = world.total_prize() / world.valid_count();
-  return mean > 0 ? static_cast<float>(std::min(world.prize(node) / mean / kMostPrize, 1.0)) : 0.0f;
+float prize_of(const View& view, NodeId node) {
+  const double mean = view.total_prize() / view.valid_count();
+  return mean > 0 ? static_cast<float>(std::min(view.prize(node) / mean / kMostPrize, 1.0)) : 0.0f;
 }
 
 float budget_left(const Observation& now) {
@@ -46,23 +46,23 @@ auto columns(std::span<float> row) {
 // The first four columns.
 void write_node(const Episode& episode, NodeId node, std::span<float> row) {
   const auto column = columns<GraphNodeFeature>(row);
-  const bool open = !episode.world().is_blocked(node);
+  const bool open = !episode.view().is_blocked(node);
   column(GraphNodeFeature::kOpen) = flag(open);
   column(GraphNodeFeature::kVisited) = flag(episode.visits()[node] > 0);
   column(GraphNodeFeature::kCurrent) = flag(episode.position() == node);
-  column(GraphNodeFeature::kPrize) = open ? prize_of(episode.world(), node) : 0.0f;
+  column(GraphNodeFeature::kPrize) = open ? prize_of(episode.view(), node) : 0.0f;
 }
 
-void write_action(const Observation& now, const World& world, int action, std::span<float> row) {
+void write_action(const Observation& now, int action, std::span<float> row) {
   const auto column = columns<GraphActionFeature>(row);
   const NodeId target = now.target(action);
-  const auto around = world.open_neighbours(target);
+  const auto around = now.view().open_neighbours(target);
   const auto unvisited = std::ranges::count_if(around, [&](NodeId next) { return !now.visited(next); });
-  const double cost = now.cost(action) / world.open().mean_cost();
+  const double cost = now.cost(action) / now.view().open().mean_cost();
   column(GraphActionFeature::kLegal) = flag(now.legal(action));
   column(GraphActionFeature::kVisited) = flag(now.visited(target));
   column(GraphActionFeature::kCost) = static_cast<float>(std::min(cost, kDearest) / kDearest);
-  column(GraphActionFeature::kPrize) = prize_of(world, target);
+  column(GraphActionFeature::kPrize) = prize_of(now.view(), target);
   column(GraphActionFeature::kUnvisitedNeighbours) =
       static_cast<float>(std::min<std::ptrdiff_t>(unvisited, kMostUnvisited)) / kMostUnvisited;
 }
@@ -81,8 +81,8 @@ GraphEpisodes::GraphEpisodes(EpisodesOptions options, int max_neighbours)
 GraphObservation GraphEpisodes::graph(int index) const {
   const Episode& at = episode(index);
   const Observation now = at.observation();
-  std::vector<float> rows(static_cast<std::size_t>(at.world().node_count()) * kGraphNodeFeatureCount);
-  for (NodeId node = 0; node < at.world().node_count(); ++node) {
+  std::vector<float> rows(static_cast<std::size_t>(at.view().node_count()) * kGraphNodeFeatureCount);
+  for (NodeId node = 0; node < at.view().node_count(); ++node) {
     const std::span<float> row(rows.data() + std::ptrdiff_t{node} * kGraphNodeFeatureCount, kGraphNodeFeatureCount);
     write_node(at, node, row);
     const int action = now.action_to(node);
@@ -90,20 +90,20 @@ GraphObservation GraphEpisodes::graph(int index) const {
     column(GraphNodeFeature::kLegal) = flag(action != kNoAction && now.legal(action));
     column(GraphNodeFeature::kBudgetLeft) = budget_left(now);
   }
-  return observation_on(at.world().open(), at.world().open().mean_cost(), std::move(rows));
+  return observation_on(at.view().open(), at.view().open().mean_cost(), std::move(rows));
 }
 
 void GraphEpisodes::show_start(int index, const Episode& episode) {
-  const World& world = episode.world();
-  for (const NodeId node : world.valid_nodes()) {
-    const auto degree = std::ssize(world.open_neighbours(node));
+  const View& view = episode.view();
+  for (const NodeId node : view.valid_nodes()) {
+    const auto degree = std::ssize(view.open_neighbours(node));
     if (degree <= neighbours_) continue;
     throw Error({.what = fmt::format("a node of {} neighbours", degree),
                  .expected = fmt::format("at most max_neighbours = {}", neighbours_),
-                 .where = world.name()});
+                 .where = view.name()});
   }
   std::ranges::fill(observation_of(index), 0.0f);
-  for (NodeId node = 0; node < world.node_count(); ++node) show_node(index, episode, node);
+  for (NodeId node = 0; node < view.node_count(); ++node) show_node(index, episode, node);
   show_moves(index, episode);
 }
 
@@ -142,13 +142,13 @@ void GraphEpisodes::show_moves(int index, const Episode& episode) {
   for (int action = 0; action < now.action_count(); ++action) {
     mask[action] = now.legal(action);
     targets[action] = now.target(action);
-    write_action(now, episode.world(), action,
+    write_action(now, action,
                  moves.subspan(static_cast<std::size_t>(action) * kGraphActionFeatureCount, kGraphActionFeatureCount));
   }
   const auto column = columns<GraphFeature>(moves.last(kGraphFeatureCount));
   column(GraphFeature::kBudgetLeft) = budget_left(now);
   column(GraphFeature::kVisited) =
-      static_cast<float>(now.visited_count) / static_cast<float>(episode.world().valid_count());
+      static_cast<float>(now.visited_count) / static_cast<float>(episode.view().valid_count());
 }
 
 }  // namespace graphdrl

@@ -19,7 +19,7 @@ FirstVisitEpisodes::FirstVisitEpisodes(EpisodesOptions options, int most_visits)
 }
 
 GraphObservation FirstVisitEpisodes::graph(int index) const {
-  const double mean_cost = episode(index).world().open().mean_cost();
+  const double mean_cost = episode(index).view().open().mean_cost();
   const ExplorerBatch& seen = memories_[index].seen;
   std::vector<float> rows = seen.node_x;
   std::ranges::transform(rows, rows.begin(), cut);
@@ -58,7 +58,7 @@ Episodes::Outcome FirstVisitEpisodes::take(int index, Episode& episode, int acti
 
 // Without the current node.
 std::vector<NodeId> FirstVisitEpisodes::way_to(Memory& memory, const Episode& episode, NodeId target) {
-  find_way(episode.world().open(), episode.position(), target, memory.visited, memory.search);
+  find_way(episode.view().open(), episode.position(), target, memory.visited, memory.search);
   std::vector<NodeId> walk;
   memory.search.append_path_to(target, walk);
   return walk;

@@ -32,8 +32,8 @@ std::array<float, kPaperFeatureCount> GridEpisodes::highest_features() const {
 void GridEpisodes::show_start(int index, const Episode& episode) {
   auto& encoder = encoders_[index];
   const std::span<float> out = observation_of(index);
-  if (encoder == nullptr || !(encoder->view() == View(episode.world()))) {
-    encoder = std::make_shared<const PaperFeatureEncoder>(episode.world());
+  if (encoder == nullptr || !(encoder->view() == episode.view())) {
+    encoder = std::make_shared<const PaperFeatureEncoder>(episode.view());
     std::ranges::fill(out, 0.0f);  // the world before may have had more cells
   }
   encoder->begin(episode.position(), out);
