@@ -129,6 +129,7 @@ const Reach& Task::reach() const {
 }
 
 Task::LazyReach& Task::LazyReach::operator=(const LazyReach& other) {
+  if (this == &other) return *this;
   auto known = other.known();
   const std::lock_guard lock(mutex_);
   known_ = std::move(known);

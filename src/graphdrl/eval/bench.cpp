@@ -96,6 +96,7 @@ void add_paper_walks(Signature& signature, std::initializer_list<const char*> po
 // The same world with a prize of 0 to 5 for each node.
 World with_prizes(const World& world, Rng& rng) {
   std::vector<double> prizes;
+  prizes.reserve(world.node_count());
   for (NodeId node = 0; node < world.node_count(); ++node) prizes.push_back(rng.below(6));
   return World(world.name() + "-prizes", world.graph(), world.blocked(), {}, std::move(prizes));
 }

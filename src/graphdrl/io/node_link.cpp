@@ -145,7 +145,7 @@ class NodeLinkReader {
     const auto found = item.is_object() ? item.find(key) : item.end();
     if (found == item.end()) fail(fmt::format("no key \"{}\"", key), "an object with it", item);
     if (found->is_string()) return found->get<std::string>();
-    const std::string text = found->is_array() ? tuple_text(*found) : found->is_number_integer() ? text_of(*found) : "";
+    std::string text = found->is_array() ? tuple_text(*found) : found->is_number_integer() ? text_of(*found) : "";
     if (text.empty()) fail(fmt::format("bad \"{}\"", key), "a text or a whole number", *found);
     return text;
   }

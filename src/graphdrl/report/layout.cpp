@@ -125,6 +125,7 @@ std::vector<Point> lay_out(const Graph& graph) {
 std::vector<Point> places_of(const World& world) {
   if (!world.has_places()) return lay_out(world.open());
   std::vector<Point> places;
+  places.reserve(world.node_count());
   for (NodeId node = 0; node < world.node_count(); ++node) places.push_back(world.place(node));
   return places;
 }
