@@ -252,10 +252,6 @@ def bad_inputs(tmp_path, policy):
     (tmp_path / "prize.json").write_text(json.dumps(graph))
     (tmp_path / "labels.json").write_text('{"nodes": [{"id": "dock"}, {"id": "shelf"}], "links": []}')
     (tmp_path / "deep.json").write_text('{"nodes":[' + "[" * 10**6 + "]" * 10**6 + '],"links":[]}')
-    (tmp_path / "rich.oplib").write_text(
-        "TYPE : OP\nDIMENSION : 2\nCOST_LIMIT : 1e12\nEDGE_WEIGHT_TYPE : EUC_2D\nNODE_COORD_SECTION\n1 0 0\n2 3 4\n"
-        "NODE_SCORE_SECTION\n1 0\n2 1\nDEPOT_SECTION\n1\n-1\nEOF\n"
-    )
     evaluate_nearest = ["evaluate", "--policy", "nearest"]
     return [
         ([*evaluate_nearest, "--maps", tmp_path / "strange.txt"], "strange.txt:1:3: strange character"),
@@ -286,8 +282,6 @@ def bad_inputs(tmp_path, policy):
         (["plan", "paper:a"], "--budget"),
         (["plan", "paper", "--budget", "9"], "expected one map, got 10"),
         (["plan", "paper:a", "--budget", "nan"], "bad budget"),
-        (["plan", "paper:a", "--budget", "1e9"], "a walk has at most 100000000 steps"),
-        (["plan", tmp_path / "rich.oplib"], "a walk has at most 100000000 steps"),
         (["plan", "paper:a", "--budget", "9", "--start", "3"], "start on an obstacle"),
         (["plan", "paper:a", "--budget", "9", "--start", "99"], "start outside the map"),
         (["plan", "paper:a", "--budget", "9", "--policy", "beam:0"], "bad beam width"),
@@ -306,7 +300,7 @@ def bad_inputs(tmp_path, policy):
         (["evaluate", "--maps", "paper:a", "--budget", "2", "--end", "24"], "the end cannot be reached"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "-1"], "bad time limit"),
         (["plan", "paper:a", "--budget", "9", "--time-limit", "nan"], "bad time limit"),
-        (["plan", tmp_path / "cost.json", "--budget", "9"], 'links[0]: bad "weight"'),
+        (["plan", tmp_path / "cost.json", "--budget", "9"], "links[0]: bad weight"),
         (["plan", tmp_path / "graph.json", "--budget", "9", "--policy", policy], "directions, on grid maps only"),
         (["plan", "paper:a", "--budget", "9", "--out", tmp_path / "a.pdf"], "no plan is written in a file with this"),
         (["plan", "paper:a", "--budget", "9", "--out", tmp_path / "a.geojson"], "needs coordinates"),
@@ -350,7 +344,7 @@ def bad_inputs(tmp_path, policy):
             "start outside the map: expected a valid node's id or row,col",
         ),
         (["plan", tmp_path / "deep.json", "--budget", "9"], "nested too deeply"),
-        (["plan", tmp_path / "prize.json", "--budget", "9"], 'nodes[1]: bad "prize"'),
+        (["plan", tmp_path / "prize.json", "--budget", "9"], "nodes[1]: bad prize"),
         (
             ["maps", "generate", "maze", "--size", "9", "--blocked", "0.2", "--out", tmp_path / "new"],
             "for the family obstacles",
@@ -359,7 +353,6 @@ def bad_inputs(tmp_path, policy):
             ["maps", "generate", "obstacles", "--size", "9", "--blocked", "0.95", "--out", tmp_path / "new"],
             "expected 0 to 0.9",
         ),
-        ([*evaluate_nearest, "--budget", "1e12"], "bad budget"),
         ([*evaluate_nearest, "--\x1b[31m"], "\\x1b[31m"),
         (["train", "--resume", ""], "--resume"),
         (["train", "--seeds", "2-1"], "--seeds: bad seeds"),
@@ -386,7 +379,7 @@ def bad_inputs(tmp_path, policy):
             "--maps is no option of the preset explorer",
         ),
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:0"], "bad beam width"),
-        (["plan", "paper:a", "--budget", "9", "--policy", f"guided:4:{policy}"], "policy of another network"),
+        (["plan", "paper:a", "--budget", "9", "--policy", f"guided:4:{policy}"], "the policy is no explorer"),
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:4:nothing"], "cannot read the file"),
         (["plan", "paper:a", "--budget", "9", "--policy", "guided:4:"], "no policy file is named"),
         (
