@@ -79,9 +79,9 @@ std::unique_ptr<Policy> make_callable_policy(nb::object choose) {
 }
 
 State::State(const World& world, std::span<const NodeId> walk, double budget, End end) {
+  if (walk.empty()) throw Error({.what = "the walk is empty", .expected = "at least a start"});
   auto own = std::make_unique<Own>(
-      Own{.episode = Episode(world, Task(world, walk.empty() ? kNoNode : walk.front(), budget, end),
-                             {.action_space = action_space_of(world)}),
+      Own{.episode = Episode(world, Task(world, walk.front(), budget, end), {.action_space = action_space_of(world)}),
           .observation = {}});
   follow_walk(own->episode, walk);
   own->observation = own->episode.observation();

@@ -37,7 +37,7 @@ nb::list evaluate(const std::vector<World>& worlds, const std::vector<std::strin
     options.own_policies[nb::cast<std::string>(name)] = [chosen = own_policy_of(policy)] { return chosen.as_policy(); };
   }
   Comparison comparison;
-  run_planning({}, nb::none(), [&](const Clock&) { comparison = compare(worlds, options); });
+  run_planning({}, nb::none(), [&](const Clock& clock) { comparison = compare(worlds, options, clock); });
   nb::list rows;
   for (const ComparisonRow& row : comparison.rows) rows.append(row_of(row));
   return rows;

@@ -3,7 +3,6 @@
 #include "bindings.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/picture.h"
 #include "graphdrl/report/plan_files.h"

@@ -147,6 +147,13 @@ TEST(Compare, StandsBesideThePaperWhereWalksEndAnywhere) {
   EXPECT_FALSE(compare(worlds, {.policies = {"nearest"}, .end = "start"}).rows[0].paper);
 }
 
+TEST(Compare, EndsWhenTheClockPasses) {
+  const World world = grid_world("....\n....\n");
+  const Comparison comparison = compare({world}, {.policies = {"random-walk"}, .episodes = 3}, Clock(0));
+  ASSERT_TRUE(comparison.rows[0].coverage);
+  EXPECT_EQ(comparison.rows[0].coverage->best, 12.5) << "the starts alone";
+}
+
 TEST(Compare, RefusesBadOptions) {
   EXPECT_THAT(error_of([] { compare(paper_worlds(), {.policies = {"nearest"}, .episodes = 0}); }),
               HasSubstr("expected at least 1, got 0"));

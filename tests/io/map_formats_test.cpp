@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "graphdrl/io/cell_table.h"
+#include "graphdrl/io/chao.h"
 #include "graphdrl/io/moving_ai.h"
 #include "support.h"
 
@@ -562,6 +564,15 @@ TEST(MapFormats, KeepGraphs) {
       }
     }
   }
+}
+
+// Names of two digits are no cells, and what stands after the last place is none.
+TEST(MapFormats, TakesNoEdgesForCellsAndNoPlaceTooMany) {
+  EXPECT_FALSE(is_cell_table("00 01\n00 10\n01 11\n10 11\n"));
+  EXPECT_TRUE(is_cell_table("0 0 1\n0 1 0\n0 0 0\n"));
+  EXPECT_TRUE(is_cell_table("001\n010\n000\n"));
+  EXPECT_THAT(error_of([] { parse_chao("n 1\n0 0 0\n1 1 5\nm 1\ntmax 9\n", "file"); }),
+              ::testing::HasSubstr("more places than n"));
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ class Clock {
   // Until the deadline, below 0 once it has passed; infinity without one.
   double seconds_left() const;
 
-  // The same with a deadline after this share of the time left, after at most so many seconds from now, and sooner by
-  // so many seconds. The first and the last have none where this has none.
+  // Clocks that pass earlier: share() after a share of the time left, at_most() after this many seconds from now,
+  // sooner() this many seconds before this one. share() and sooner() have no deadline if this one has none.
   Clock share(double of_time_left) const;
   Clock at_most(double seconds) const;
   Clock sooner(double seconds) const;

@@ -23,7 +23,7 @@ constexpr int kReplayEpisodes = 200;
 
 // Of random moves.
 PaperReplayBuffer random_replay(const World& world, Rng& rng) {
-  PaperReplayBuffer replay(100'000, static_cast<std::size_t>(world.graph().node_count()));
+  PaperReplayBuffer replay(100'000, static_cast<std::size_t>(world.node_count()));
   Episode episode(world, {});
   for (int i = 0; i < kReplayEpisodes; ++i) {
     episode.reset(world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);

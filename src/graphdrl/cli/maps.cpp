@@ -221,7 +221,13 @@ void convert_map(const ConvertOptions& options) {
   write_file(options.out, format_map(named.map, options.out));
   const auto* const graph = std::get_if<GraphMap>(&named.map);
   const bool given = graph != nullptr && (graph->task.budget || graph->task.start != kNoNode);
-  print_text(fmt::format("Wrote {}{}\n", options.out, given ? ", without the budget and the ends of the file" : ""));
+  std::string text = fmt::format("Wrote {}", options.out);
+  if (given) text += ", without the budget and the ends of the file";
+  if (graph != nullptr && graph->multigraph != nullptr) {
+    const auto left_out = std::ssize(graph->multigraph->edges) - graph->graph.edge_count();
+    if (left_out > 0) text += fmt::format(", without {} loops and parallel edges", left_out);
+  }
+  print_text(text + '\n');
 }
 
 std::string describe_formats() {

@@ -100,6 +100,7 @@ void Episodes::step(std::span<const std::int64_t> actions) {
 void Episodes::begin(int index, NodeId start) {
   if (start != kNoNode && !options_.world) throw Error({.what = "a random world has no start to choose"});
   Slot& slot = slots_[index];
+  slot.over = true;  // until all is shown: what follows may throw
   if (!slot.episode || !options_.world) slot.episode.emplace(new_episode(slot.rng));
   Episode& episode = *slot.episode;
   const auto nodes = episode.world().valid_nodes();

@@ -14,8 +14,8 @@ struct FirstVisit {
   double cost = 0;        // in units of cost
 };
 
-// Where a walk stands, what ground it has, and what it may still spend. It refers to a task and to a set of ground that
-// somebody else keeps; both must outlive it. Searches, networks and baselines take their first visits from here.
+// Where a walk stands, what ground it has, and what it may still spend. It refers to a task and to a set of ground,
+// which must outlive it. Searches, networks and baselines take their first visits from here.
 class Exploration {
  public:
   // At the start of a task. ground: task.ground().

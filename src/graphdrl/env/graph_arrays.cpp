@@ -57,9 +57,6 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
   if (map.blocked.empty()) map.blocked.resize(n);
   map.graph = Graph::from_edges(static_cast<NodeId>(arrays.node_count), edges,
                                 arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
-  if (std::ssize(edges) > map.graph.edge_count()) {
-    map.multigraph = std::make_shared<const Multigraph>(Multigraph{.edges = std::move(edges)});
-  }
   return World(std::move(name), std::move(map));
 }
 

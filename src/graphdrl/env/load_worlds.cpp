@@ -51,7 +51,7 @@ World load_one_world(const std::string& source, const MapOptions& options) {
 
 NodeId parse_node(const World& world, std::string_view text, std::string_view role) {
   const NodeId node = find_node(world, text);
-  const bool there = node >= 0 && node < world.graph().node_count();
+  const bool there = node >= 0 && node < world.node_count();
   if (there && !world.is_blocked(node)) return node;
   std::string expected = "a valid node's id";
   if (world.has_cells()) expected += " or row,col";

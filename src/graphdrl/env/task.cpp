@@ -77,7 +77,10 @@ void Task::check() const {
 void Task::start_at(NodeId start) {
   if (start == start_) return;
   if (asked_end_.of(start) != end_) {
-    *this = Task(view_, start, budget_, asked_end_);
+    Task moved(view_, start, budget_, asked_end_);
+    std::swap(moved.claimed_, claimed_);
+    moved.claims_beyond_ground_ = claims_beyond_ground_;
+    *this = std::move(moved);
     return;
   }
   check_node(view_, start, "start");

@@ -4,7 +4,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "graphdrl/env/budget.h"
@@ -47,10 +46,10 @@ struct Reach {
 
 // Visit what is worth most within a budget. Of walks worth the same, the cheaper one is better.
 //
-// Checked when it is made: whoever has a task need not check it. A value; copies share what was searched for.
+// Checked when it is made: a task needs no other check. A value; copies share what was searched for.
 class Task {
  public:
-  // Throws Error where nobody states a budget, and as below.
+  // Throws Error if neither states a budget, and as below.
   Task(const World& world, const Asked& asked);
 
   // Throws Error on a budget below 0 or not a number, on a start or an end that is blocked or not in the world, and on
@@ -60,8 +59,8 @@ class Task {
   // The same from another start, at no further search unless the end moves with it. Throws Error as above.
   void start_at(NodeId start);
 
-  // The rest of a walk that stands at a node, has visited a set of nodes and must end where this task's does. What it
-  // visited is its ground, and worth nothing any more.
+  // The rest of a walk: it stands at a node, has visited a set of nodes and must end where this task's walk does. The
+  // nodes visited are its ground, and worth nothing any more.
   // REQUIRES: the end can be reached for the budget.
   Task rest(NodeId position, double budget, NodeSet visited) const;
 
@@ -72,7 +71,8 @@ class Task {
   NodeId start() const { return start_; }
   NodeId end() const { return end_; }  // kNoNode: anywhere
   bool ends_anywhere() const { return end_ == kNoNode; }
-  double budget() const { return budget_; }  // units of cost
+  bool ends_at_start() const { return !ends_anywhere() && asked_end_.of(kNoNode) == kNoNode; }  // wherever that is
+  double budget() const { return budget_; }                                                     // units of cost
   // What may be spent in all: the budget with room for the rounding of sums, and at most kMaxSteps mean edges.
   double limit() const { return limit_; }
 

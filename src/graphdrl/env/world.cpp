@@ -66,7 +66,8 @@ const std::string& World::unit() const {
 
 const Graph& World::graph() const {
   if (data_->graph) return *data_->graph;
-  return has_cells() && valid_count() < node_count() ? view().grid().graph() : open();
+  // Diagonals past an obstacle are no edges of it.
+  return is_grid() && valid_count() < node_count() ? view().grid().graph() : open();
 }
 
 }  // namespace graphdrl

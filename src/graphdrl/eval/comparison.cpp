@@ -81,7 +81,9 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
     const std::vector<NodeId> starts = draw_starts(world, options, arenas.size());
     asked.start = starts.front();
     Task task(world, asked);
-    for (const NodeId start : starts) task.start_at(start);  // throws Error where the end is out of reach
+    if (!task.ends_at_start()) {
+      for (const NodeId start : starts) task.start_at(start);  // throws Error where the end is out of reach
+    }
     arenas.push_back({.world = world, .task = task, .starts = starts, .optimum = {}});
   }
   parallel_for(static_cast<int>(arenas.size()), [&](int i) { arenas[i].optimum = mean_optimum(arenas[i]); });
@@ -96,7 +98,7 @@ struct Block {
 };
 
 bool is_planner(const std::string& name, const ComparisonOptions& options) {
-  return !options.own_policies.contains(name) && make_planner(name) != nullptr;
+  return !options.own_policies.contains(name) && plans(parse_policy(name));
 }
 
 std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, const ComparisonOptions& options) {
@@ -133,7 +135,7 @@ std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const Compariso
 // Percents, by policy, map and episode; an empty one where a policy's search is out of reach.
 using Coverages = std::vector<std::vector<std::vector<double>>>;
 
-Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& options) {
+Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& options, const Clock& clock) {
   Coverages coverages(options.policies.size(), std::vector<std::vector<double>>(arenas.size()));
   for (auto& of_policy : coverages) {
     for (std::size_t map = 0; map < arenas.size(); ++map) of_policy[map].resize(arenas[map].starts.size());
@@ -149,8 +151,8 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
     std::vector<NodeId> starts;
     for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
     try {
-      const auto results =
-          roll_out(Episode(arena.world, arena.task, {.action_space = action_space_of(arena.world)}), starts, *policy);
+      const auto results = roll_out(Episode(arena.world, arena.task, {.action_space = action_space_of(arena.world)}),
+                                    starts, *policy, clock);
       for (std::size_t i = 0; i < results.size(); ++i) {
         coverages[block.policy][block.map][block.episodes[i]] = arena.world.percent_of_all(results[i].prize);
       }
@@ -204,12 +206,12 @@ std::optional<PaperResult> paper_result(const std::string& map, double budget) {
   return kPaperTable2[index];
 }
 
-Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options) {
+Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock) {
   if (options.episodes < 1) {
     throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
   }
   const std::vector<Arena> arenas = make_arenas(worlds, options);
-  const Coverages coverages = measure(arenas, options);
+  const Coverages coverages = measure(arenas, options, clock);
   Comparison comparison{.options = options, .rows = {}, .overall = {}};
   for (std::size_t policy = 0; policy < options.policies.size(); ++policy) {
     const std::string label = unambiguous_label(options.policies[policy], options);

@@ -68,8 +68,9 @@ struct Comparison {
   std::vector<ComparisonOverall> overall;
 };
 
-// Grids are walked in directions, other worlds by neighbours. Throws Error on a bad policy or option.
-Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options);
+// Grids are walked in directions, other worlds by neighbours. Once the clock passes, episodes end where they are.
+// Throws Error on a bad policy or option.
+Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock = {});
 
 // The comparison as a text: a table per policy, and a line per policy over all maps.
 std::string format_comparison(const Comparison& comparison);

@@ -23,7 +23,8 @@ int block_size(const World& world) {
   return static_cast<int>(std::clamp<std::int64_t>(kMostNodesInBlock / world.node_count(), 1, kMostInBlock));
 }
 
-std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy) {
+std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy,
+                                    const Clock& clock) {
   std::vector<Episode> episodes(starts.size(), episode);
   std::vector<int> running;
   for (int i = 0; i < std::ssize(starts); ++i) {
@@ -32,11 +33,11 @@ std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const Node
   }
   std::vector<Observation> observations;
   std::vector<int> actions;
-  while (!running.empty()) {
+  while (!running.empty() && !clock.passed()) {
     observations.clear();
     for (const int i : running) observations.push_back(episodes[i].observation());
     actions.resize(running.size());
-    policy.act(observations, actions);
+    policy.act(observations, actions, clock);
     std::vector<int> going_on;
     for (std::size_t k = 0; k < running.size(); ++k) {
       if (actions[k] == kStop) continue;

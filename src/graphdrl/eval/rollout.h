@@ -20,8 +20,9 @@ struct RolloutResult {
 // counts would fill the memory.
 int block_size(const World& world);
 
-// One episode like `episode` per start, side by side, each until it is done or the policy stops.
-std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy);
+// One episode like `episode` per start, side by side, each until it is done, the policy stops or the clock passes.
+std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy,
+                                    const Clock& clock = {});
 
 // Lets a policy that chooses step by step walk one episode, and takes that for its plan, up to the last first visit
 // where it may end anywhere. Once the clock passes, goes straight to where it must end.

@@ -40,6 +40,7 @@ class NodeSet {
 // plain NodeSet has no such nodes. Refers to both; valid while they live.
 class NodeSetView {
  public:
+  NodeSetView(const NodeSet&&) = delete;              // it would be gone
   NodeSetView(const NodeSet& set) : common_(&set) {}  // NOLINT(google-explicit-constructor): a set is a view of itself
   // place: [N], a node's bit in `row`, or -1 where `common` says whether it is in the set.
   NodeSetView(const NodeSet& common, const std::int32_t* place, const std::uint64_t* row)

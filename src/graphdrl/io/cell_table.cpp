@@ -23,7 +23,7 @@ std::optional<std::size_t> add_cells(std::string_view line, std::optional<bool>&
     if ((c == '0' || c == '1') && cell_next) {
       blocked.push_back(c == '1');
       cell_next = !parted.value_or(true);
-    } else if (c == ' ' || c == '\t' || ((c == ',' || c == ';') && !cell_next)) {
+    } else if (parted.value_or(true) && (c == ' ' || c == '\t' || ((c == ',' || c == ';') && !cell_next))) {
       cell_next = true;
     } else {
       return std::nullopt;

@@ -110,6 +110,7 @@ class ChaoReader {
 
   void read_place() {
     if (words_.size() != 3) fail("not a place", "x, y and score");
+    if (places_ > 0 && std::ssize(points_) == places_) fail("more places than n", fmt::format("{}", places_));
     points_.push_back(
         {number(0, -kMostInTeamFile, kMostInTeamFile, "x"), number(1, -kMostInTeamFile, kMostInTeamFile, "y")});
     prizes_.push_back(number(2, 0, kMostInTeamFile, "score"));

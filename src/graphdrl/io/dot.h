@@ -16,7 +16,7 @@ bool is_dot(std::string_view text);
 // Error, naming `source` and the line, on anything else. (Boost.Graph's reader, 1.74, knows no graphs without a name.)
 GraphMap parse_dot(std::string_view text, const std::string& source, const MapOptions& options = {});
 
-// Ends with a line break. Keeps all but the task.
+// Ends with a line break. Keeps all but the task, loops and parallel edges.
 std::string format_dot(const GraphMap& map);
 // The same with one more attribute.
 std::string format_dot(const GraphMap& map, const NodeColumn& column);

@@ -16,7 +16,8 @@ bool is_gml(std::string_view text);
 // skipped. Throws Error, naming `source` and the line, on anything else.
 GraphMap parse_gml(std::string_view text, const std::string& source, const MapOptions& options = {});
 
-// Ends with a line break. Keeps all but the task. What is not ASCII in labels is written as &#N;, as the format asks.
+// Ends with a line break. Keeps all but the task, loops and parallel edges. What is not ASCII in labels is written as
+// &#N;, as the format asks.
 std::string format_gml(const GraphMap& map);
 
 }  // namespace graphdrl

@@ -19,7 +19,7 @@ bool is_graphml(std::string_view text);
 // range.
 GraphMap parse_graphml(std::string_view text, const std::string& source, const MapOptions& options = {});
 
-// Ends with a line break. Keeps all but the task.
+// Ends with a line break. Keeps all but the task, loops and parallel edges.
 std::string format_graphml(const GraphMap& map);
 // The same with one more attribute.
 std::string format_graphml(const GraphMap& map, const NodeColumn& column);

@@ -9,7 +9,6 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/best_states.h"
-#include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/visited_sets.h"
 
 namespace graphdrl {

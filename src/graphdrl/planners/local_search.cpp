@@ -28,6 +28,7 @@ Tour tour_of(const Task& task, const Targets& targets, const Plan& plan) {
   double cost = 0;
   for (std::size_t i = 1; i < walk.size(); ++i) {
     const Graph& open = task.view().open();
+    if (walk[i] == walk[i - 1]) continue;  // a blocked move
     cost += open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
     const int target = targets.target_of(walk[i]);
     if (target <= 0 || taken[target] != 0) continue;

@@ -13,7 +13,7 @@
 namespace graphdrl {
 
 inline constexpr double kPrizeRounding = 1e-12;  // relative, of sums of the same prizes in another order
-inline constexpr double kBoundRounding = 1e-9;   // relative: a walk that is worth as much as that meets a bound
+inline constexpr double kBoundRounding = 1e-11;  // relative: a walk worth as much as that meets a bound
 
 // Whether no walk that keeps to a bound is worth more, but for rounding.
 inline bool meets(double prize, double bound) {

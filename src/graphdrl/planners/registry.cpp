@@ -102,6 +102,11 @@ PolicySpec parse_policy(const std::string& name) {
   return {.kind = PolicyKind::kFile, .file = name, .label = std::filesystem::path(name).stem().string()};
 }
 
+bool plans(const PolicySpec& spec) {
+  if (spec.kind == PolicyKind::kFile) return std::holds_alternative<SharedExplorer>(read_policy(spec.file));
+  return spec.kind != PolicyKind::kRandom && spec.kind != PolicyKind::kRandomWalk;
+}
+
 std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed) {
   switch (spec.kind) {
     case PolicyKind::kRandom:

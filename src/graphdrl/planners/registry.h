@@ -40,6 +40,9 @@ struct PolicySpec {
 // `exact`, or a policy file. Throws Error on any other name.
 PolicySpec parse_policy(const std::string& name);
 
+// Whether it plans whole walks. Throws Error on a file that holds no policy.
+bool plans(const PolicySpec& spec);
+
 // Null where it chooses step by step. seed: of `search`. Throws Error on a file that holds no policy.
 std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed = 1);
 // Whatever it is; planners are followed step by step. seed: of `search` and of random policies.

@@ -5,7 +5,7 @@
 namespace graphdrl {
 
 std::vector<int> first_visits(const World& world, std::span<const NodeId> walk) {
-  std::vector<int> steps(world.graph().node_count(), -1);
+  std::vector<int> steps(world.node_count(), -1);
   for (std::size_t step = 0; step < walk.size(); ++step) {
     if (steps[walk[step]] < 0) steps[walk[step]] = static_cast<int>(step);
   }

@@ -53,7 +53,7 @@ std::vector<World> checked(std::vector<World> worlds, const TrainOptions& option
 
 std::size_t largest(const std::vector<World>& worlds) {
   NodeId nodes = 0;
-  for (const World& world : worlds) nodes = std::max(nodes, world.graph().node_count());
+  for (const World& world : worlds) nodes = std::max(nodes, world.node_count());
   return static_cast<std::size_t>(nodes);
 }
 
@@ -105,7 +105,7 @@ void PaperRecipe::begin_episode() {
 void PaperRecipe::begin_episode_at(int world, NodeId start) {
   world_ = world;
   episodes_[world].reset(start);
-  features_.resize(static_cast<std::size_t>(worlds_[world].graph().node_count()) * kPaperFeatureCount);
+  features_.resize(static_cast<std::size_t>(worlds_[world].node_count()) * kPaperFeatureCount);
   encoders_[world].begin(start, features_);
   actions_.clear();
   episode_reward_ = 0;
@@ -245,7 +245,7 @@ void PaperRecipe::restore(const Checkpoint& checkpoint, const TrainingProgress& 
                        .adam = checkpoint.adam(PaperParameters::trainable_count())});
   replay_.restore(checkpoint, [&](const Transition& t) {
     if (t.world < 0 || t.world >= std::ssize(worlds_)) return false;
-    const auto inside = [&](NodeId node) { return node >= 0 && node < worlds_[t.world].graph().node_count(); };
+    const auto inside = [&](NodeId node) { return node >= 0 && node < worlds_[t.world].node_count(); };
     return inside(t.position) && inside(t.next_position) && t.action >= 0 && t.action < kActionCount;
   });
   restore_episode(checkpoint);
