@@ -7,11 +7,11 @@
 namespace graphdrl {
 namespace {
 
-// A diagonal step that passes a blocked corner is no edge, in the graph with its obstacles neither.
-TEST(World, HasNoDiagonalsPastObstacles) {
+// A diagonal step that passes a blocked corner is no edge of what is written.
+TEST(World, IsWrittenWithoutDiagonalsPastObstacles) {
   const World world("corner", GridMap{.rows = 2, .cols = 2, .blocked = {false, false, true, false}, .diagonals = true});
-  EXPECT_EQ(world.graph().index_of(0, 3), -1);
-  EXPECT_EQ(world.graph().edge_count(), 2);
+  EXPECT_EQ(world.to_map().graph.index_of(0, 3), -1);
+  EXPECT_EQ(world.to_map().graph.edge_count(), 2);
 }
 
 TEST(World, IsOneDescriptionOfAGraphAndBack) {

@@ -41,7 +41,8 @@ World::World(std::string name, Graph graph, std::vector<bool> blocked, std::vect
                                       .task = given}) {}
 
 GraphMap World::to_map() const {
-  GraphMap map{.graph = graph(),
+  const bool diagonals = has_cells() && !is_grid();  // those past an obstacle are no edges
+  GraphMap map{.graph = diagonals ? open() : graph(),
                .blocked = blocked(),
                .labels = labels(),
                .prizes = prizes(),
@@ -66,8 +67,7 @@ const std::string& World::unit() const {
 
 const Graph& World::graph() const {
   if (data_->graph) return *data_->graph;
-  // Diagonals past an obstacle are no edges of it.
-  return is_grid() && valid_count() < node_count() ? view().grid().graph() : open();
+  return has_cells() && valid_count() < node_count() ? view().grid().graph() : open();
 }
 
 }  // namespace graphdrl
