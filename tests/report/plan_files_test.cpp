@@ -116,5 +116,14 @@ TEST_F(PlanFiles, AWalkOnOneLineIsReadWhole) {
   EXPECT_THAT(error_of([&] { read("0 1 2\n1 2 5\n"); }), HasSubstr("walk:1: several words a line"));
 }
 
+// Whatever a file says of a bound, no walk visits more nodes than there are, or fewer than none.
+TEST(ReadPlan, KeepsTheMostVisitedWithinTheMap) {
+  const World world = labelled_world();
+  EXPECT_EQ(parse_plan(world, "7\n", "walk").max_visited(), 3) << "no bound";
+  EXPECT_EQ(parse_plan(world, R"({"walk": [0], "upper_bound": 1e300})", "walk").max_visited(), 3);
+  EXPECT_EQ(parse_plan(world, R"({"walk": [0], "upper_bound": -1e300})", "walk").max_visited(), 0);
+  EXPECT_EQ(parse_plan(world, R"({"walk": [0], "upper_bound": 66.7})", "walk").max_visited(), 2);
+}
+
 }  // namespace
 }  // namespace graphdrl

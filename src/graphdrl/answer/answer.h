@@ -1,6 +1,7 @@
 // One task answered: the plan, its bound, and what is said beside them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -21,8 +22,8 @@ struct Answer {
   int unreachable = 0;  // valid nodes that no walk can reach, whatever it spends
   double elapsed_s = 0;
 
-  // By any walk, at most. REQUIRES: the world has no prizes, and the plan has a bound.
-  int max_visited() const { return static_cast<int>(plan.bound); }
+  // By any walk, at most: all valid nodes where the plan has no bound. REQUIRES: the world has no prizes.
+  int max_visited() const { return static_cast<int>(std::clamp<double>(plan.bound, 0, world.valid_count())); }
 };
 
 struct PlanRequest {
