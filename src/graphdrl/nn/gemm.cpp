@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/asan_interface.h>
+#endif
 #ifdef __SANITIZE_THREAD__
 // ThreadSanitizer's run-time library has these; its public header does not declare them.
 extern "C" void __tsan_read_range(const void* address, unsigned long size);
@@ -14,18 +17,42 @@ namespace {
 
 constexpr int kTransposeBlock = 16;
 
-// Tells ThreadSanitizer what a kernel accesses, row by row. GCC builds the kernels without it: with each access
-// instrumented, the tests of trainings took 2.6 times as long.
-template <typename T>
-void tell_thread_sanitizer([[maybe_unused]] const GemmTask<T>& task) {
-#ifdef __SANITIZE_THREAD__
-  const int rows_of_a = task.transposed ? task.k : task.m;
-  const int columns_of_a = task.transposed ? task.m : task.k;
-  for (int row = 0; row < rows_of_a; ++row) __tsan_read_range(task.a + row * task.lda, columns_of_a * sizeof(T));
-  // All 32 columns, though a kernel may read fewer: no thread may write to a panel in use.
-  __tsan_read_range(task.panel, static_cast<std::size_t>(task.k) * kPanelColumns * sizeof(T));
-  for (int row = 0; row < task.m; ++row) __tsan_write_range(task.c + row * task.ldc, task.columns * sizeof(T));
+// What a sanitizer of this build is told.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kSanitized = true;
+void tell_read(const void* address, std::size_t size) {
+  const void* const poisoned = __asan_region_is_poisoned(const_cast<void*>(address), size);
+  if (poisoned) static_cast<void>(*static_cast<const volatile char*>(poisoned));  // this read is reported
+}
+void tell_write(void* address, std::size_t size) {
+  tell_read(address, size);
+}
+#elif defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+void tell_read(const void* address, std::size_t size) {
+  __tsan_read_range(address, size);
+}
+void tell_write(void* address, std::size_t size) {
+  __tsan_write_range(address, size);
+}
+#else
+constexpr bool kSanitized = false;
+void tell_read(const void*, std::size_t) {}
+void tell_write(void*, std::size_t) {}
 #endif
+
+// Tells the sanitizer what a kernel accesses, row by row. GCC builds the kernels without it: with each access
+// instrumented, the tests of trainings take several times as long.
+template <typename T>
+void tell_sanitizer(const GemmTask<T>& task) {
+  if constexpr (kSanitized) {
+    const int rows_of_a = task.transposed ? task.k : task.m;
+    const int columns_of_a = task.transposed ? task.m : task.k;
+    for (int row = 0; row < rows_of_a; ++row) tell_read(task.a + row * task.lda, columns_of_a * sizeof(T));
+    // All 32 columns, though a kernel may read fewer: no thread may write to a panel in use.
+    tell_read(task.panel, static_cast<std::size_t>(task.k) * kPanelColumns * sizeof(T));
+    for (int row = 0; row < task.m; ++row) tell_write(task.c + row * task.ldc, task.columns * sizeof(T));
+  }
 }
 
 using Kernel = void (*)(const GemmTask<float>& task);
@@ -40,12 +67,12 @@ Kernel choose_kernel() {
 
 void multiply(const GemmTask<float>& task) {
   static const Kernel kernel = choose_kernel();
-  tell_thread_sanitizer(task);
+  tell_sanitizer(task);
   kernel(task);
 }
 
 void multiply(const GemmTask<double>& task) {
-  tell_thread_sanitizer(task);
+  tell_sanitizer(task);
   plain::multiply(task);
 }
 
