@@ -21,6 +21,12 @@ class Error : public std::runtime_error {
   explicit Error(const ErrorParts& parts);
 };
 
+// What the machine refused, whatever the caller asked: disk, memory, threads.
+class MachineError : public Error {
+ public:
+  using Error::Error;
+};
+
 // `text` on one line: a path or a name may hold line breaks and terminal codes.
 std::string escaped(std::string_view text);
 

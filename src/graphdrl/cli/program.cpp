@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/note.h"
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/report/progress.h"
 
@@ -103,6 +104,7 @@ void parse(CLI::App& app, int argc, char** argv) {
 int run_program(CLI::App& app, int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe fails like any other write
   set_threads(hardware_threads());
+  listen_to_notes([](const std::string& text) { print_diagnostic(escaped(text) + "\n"); });
   try {
     parse(app, argc, argv);
     return kExitDone;
@@ -110,10 +112,12 @@ int run_program(CLI::App& app, int argc, char** argv) {
     return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return complain(app, error.what(), kExitBadInput);
+  } catch (const MachineError& error) {
+    return complain(app, error.what(), kExitMachine);
   } catch (const Error& error) {
     return complain(app, error.what(), kExitBadInput);
   } catch (const std::bad_alloc&) {
-    return complain(app, "out of memory", kExitOurFault);
+    return complain(app, "out of memory", kExitMachine);
   } catch (const std::exception& error) {
     return complain(app, error.what(), kExitOurFault);
   }

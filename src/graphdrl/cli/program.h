@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitOurFault = 1;
 inline constexpr int kExitBadInput = 2;
+inline constexpr int kExitMachine = 3;       // the machine refused: disk, memory, threads
 inline constexpr int kExitClosedPipe = 141;  // as a shell says of a program that SIGPIPE ended
 
 // Parses the arguments, which runs the chosen command's callback. Turns any exception into one line on standard error
