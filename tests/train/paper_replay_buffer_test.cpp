@@ -4,6 +4,7 @@
 
 #include <deque>
 
+#include "graphdrl/io/file.h"
 #include "graphdrl/train/paper_epsilon.h"
 #include "support.h"
 
@@ -36,7 +37,7 @@ void save(const PaperReplayBuffer& buffer, const std::filesystem::path& path) {
   CheckpointWriter writer("paper");
   buffer.save(writer);
   writer.add(TrainingProgress{});
-  writer.write(path);
+  write_file(path, writer.content());
 }
 
 TEST(PaperReplayBuffer, IsADequeOfItsCapacityAndSurvivesACheckpoint) {

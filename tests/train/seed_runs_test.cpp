@@ -94,7 +94,9 @@ TEST(SeedRuns, BeginWhatIsMissing) {
     options.seed = seed;
     Trainer::start(options, SeedRuns::run_directory_in(folder / "all", seed));
   }
-  std::filesystem::remove(folder / "all" / "seed-3" / "checkpoint.safetensors");
+  for (const char* const file : {"checkpoint.safetensors", "policy.safetensors", "run.json"}) {
+    std::filesystem::remove(folder / "all" / "seed-3" / file);
+  }
   SeedRuns runs = SeedRuns::resume(folder / "all");
   EXPECT_TRUE(runs.trainings().run(kNever, kSilent));
   for (const std::uint64_t seed : {2, 3}) {

@@ -7,12 +7,17 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/note.h"
 #include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
+
 constexpr const char* kDescriptionKey = "network";
-}
+constexpr const char* kLayoutKey = "layout";
+constexpr const char* kLayout = "2";  // since it there is a checksum; files before it have no layout
+
+}  // namespace
 
 void TensorList::add(std::string name, Shape shape, float bound, bool trainable) {
   std::size_t size = 1;
@@ -119,7 +124,7 @@ std::size_t trainable_count(const std::vector<TensorSpec>& specs) {
 
 void write_policy_file(const std::filesystem::path& path, const ParameterBuffer& parameters,
                        const nlohmann::json& description) {
-  write_safetensors(path, parameters.views(), {{kDescriptionKey, description.dump()}});
+  write_safetensors(path, parameters.views(), {{kDescriptionKey, description.dump()}, {kLayoutKey, kLayout}});
 }
 
 nlohmann::json policy_description(const Safetensors& file) {
@@ -127,12 +132,22 @@ nlohmann::json policy_description(const Safetensors& file) {
   if (text == file.metadata().end()) {
     throw Error({.what = "not a policy file", .expected = "a network's description", .where = file.source()});
   }
+  if (const auto layout = file.metadata().find(kLayoutKey); layout != file.metadata().end()) {
+    if (layout->second != kLayout) {
+      throw Error({.what = "a policy file of another version of graphdrl",
+                   .expected = std::string("layout ") + kLayout,
+                   .got = in_quotes(layout->second),
+                   .where = file.source()});
+    }
+    file.require_checksum();
+  }
   return parse_json(text->second, file.source(), "a network's description in the metadata");
 }
 
 void require_description(const Safetensors& file, const nlohmann::json& expected,
                          const std::vector<TensorSpec>& specs) {
   const auto found = policy_description(file);
+  if (!file.has_checksum()) note(file.source() + ": no checksum: whether the policy is undamaged cannot be told");
   for (const auto& [key, value] : expected.items()) {
     if (found.is_object() && found.contains(key) && found[key] == value) continue;
     const std::string got = found.is_object() && found.contains(key) ? shortened(found[key], 200) : "nothing";

@@ -81,10 +81,12 @@ std::size_t trainable_count(const std::vector<TensorSpec>& specs);
 void write_policy_file(const std::filesystem::path& path, const ParameterBuffer& parameters,
                        const nlohmann::json& description);
 
-// The description in a policy file. Throws Error where there is none, or no JSON.
+// The description in a policy file. Throws Error where there is none, or no JSON, and where the checksum is missing
+// that every file of this layout has.
 nlohmann::json policy_description(const Safetensors& file);
 
-// Throws Error where the file's description is not the one expected, or its tensors are not as many as the specs.
+// Throws Error where the file's description is not the one expected, or its tensors are not as many as the specs. Notes
+// that an older file has no checksum.
 void require_description(const Safetensors& file, const nlohmann::json& expected, const std::vector<TensorSpec>& specs);
 
 }  // namespace graphdrl
