@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <memory>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/planners/registry.h"
@@ -81,39 +80,21 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
   return text;
 }
 
-volatile std::sig_atomic_t plan_signal = 0;
-std::atomic<bool> plan_stopped = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
-
-extern "C" void remember_plan_signal(int signal) {
-  plan_signal = signal;
-  plan_stopped = true;
-}
-
-// The first signal ends the planning, and the best walk so far is printed; the second one ends the program.
-void stop_planning_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = remember_plan_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
 void plan(const PlanOptions& options) {
   const World world = load_one_world(options.map, options.reading);
   const Task task(world, asked_of(world, options.asked));
   for (const std::string& file : options.out) check_plan_file(world, file);
-  stop_planning_on_signals();
+  catch_stop_signals();  // the best walk so far is printed
   PlanDisplay display(world);
   const ProgressListener listener = [&](const Progress& progress) { display.show(progress); };
-  const Answer answer = make_plan(world, task, options.request, Clock(options.time_limit_s, &plan_stopped, &listener));
+  const Answer answer = make_plan(world, task, options.request, Clock(options.time_limit_s, &stop_flag(), &listener));
   for (const std::string& file : options.out) write_plan(answer, file);
   if (options.json) {
     print_json(plan_json(answer));
   } else {
     print_text(format_plan(answer, options));
   }
-  if (plan_signal != 0) throw CLI::RuntimeError(128 + plan_signal);
+  if (stop_signal() != 0) throw CLI::RuntimeError(128 + stop_signal());
 }
 
 }  // namespace

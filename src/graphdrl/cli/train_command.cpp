@@ -5,9 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -16,6 +14,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/options.h"
@@ -25,13 +24,6 @@
 
 namespace graphdrl {
 namespace {
-
-std::atomic<int> stop_signal = 0;
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler writes it");
-
-extern "C" void remember_signal(int signal) {
-  stop_signal = signal;
-}
 
 constexpr const char* kTorchProgram = "graphdrl-train";
 
@@ -60,6 +52,7 @@ class ConfigReader : public CLI::ConfigTOML {
     if (!json.is_object()) throw Error({.what = "the configuration is not valid JSON", .where = "--config"});
     std::vector<CLI::ConfigItem> result;
     for (const auto& [key, value] : json.items()) {
+      if (key == "layout" || key == "crc32c") continue;  // of seeds.json
       CLI::ConfigItem item;
       item.name = flag_of(key).substr(2);
       for (const Json& one : value.is_array() ? value : Json::array({value})) {
@@ -77,6 +70,7 @@ struct TrainCommand {
   std::string seeds;
   std::string out;
   std::string resume;
+  bool break_lock = false;
   bool json = false;
 };
 
@@ -146,7 +140,7 @@ class OptionFlags {
 [[noreturn]] void leave_stopped(const std::string& what, const std::string& run) {
   print_diagnostic(
       fmt::format("Stopped after {}; everything is saved. To go on:\n  graphdrl train --resume {}\n", what, run));
-  throw CLI::RuntimeError(128 + stop_signal);
+  throw CLI::RuntimeError(128 + stop_signal());
 }
 
 Json report_of(const RunDirectory& run, const TrainingProgress& progress, const TrainingUnits& units) {
@@ -162,9 +156,9 @@ void train(Trainer& trainer, bool json) {
   const std::string run = trainer.run_directory().path().string();
   const TrainingProgress& progress = trainer.progress();
   const TrainingUnits& units = trainer.units();
-  catch_training_signals();
+  catch_stop_signals();
   ProgressDisplay display(stderr, units.name, progress.done);
-  const bool finished = trainer.run([] { return stop_signal != 0; },
+  const bool finished = trainer.run([] { return stop_flag().load(); },
                                     [&](const TrainingNews& news) {
                                       const bool last = progress.done == units.count;
                                       display.show(progress.done, units.count, news.status, last);
@@ -187,10 +181,10 @@ void train(SeedRuns& seeds, const LearnerSource& learners, bool json) {
     before += progress.done;
     if (progress.done == units.count) ++seeds_done;
   }
-  catch_training_signals();
+  catch_stop_signals();
   ProgressDisplay display(stderr, units.name, before);
   const std::size_t count = trainings.runs().size();
-  const bool finished = trainings.run([] { return stop_signal != 0; },
+  const bool finished = trainings.run([] { return stop_flag().load(); },
                                       [&](const SideBySideNews& news) {
                                         seeds_done = news.runs_done;
                                         const bool last = news.units_done == news.units;
@@ -239,6 +233,9 @@ class TrainProgram {
     resume_ = app_.add_option("--resume", command_.resume, "Go on with a run; takes none of the options above")
                   ->type_name("RUN")
                   ->check(not_empty());
+    app_.add_flag("--break-lock", command_.break_lock,
+                  "With --resume: go on at once though a trainer on another host held the run in the last minute")
+        ->needs(resume_);
     app_.add_flag("--json", command_.json, "Print one JSON document when done");
     add_threads_option(app_);
     app_.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
@@ -254,6 +251,7 @@ class TrainProgram {
   void run() {
     if (resume_->count() > 0) {
       refuse_beside_resume(of_new_runs_, command_.resume);
+      if (command_.break_lock) break_locks(command_.resume);
       if (SeedRuns::are_in(command_.resume)) {
         SeedRuns runs = SeedRuns::resume(command_.resume);
         return train(runs, learners_, command_.json);
@@ -276,7 +274,7 @@ class TrainProgram {
   TrainCommand command_;
   OptionFlags flags_;
   std::vector<CLI::Option*> of_new_runs_;
-  const CLI::Option* resume_ = nullptr;
+  CLI::Option* resume_ = nullptr;
 };
 
 }  // namespace
@@ -299,18 +297,6 @@ std::vector<std::unique_ptr<LearnerSource>> CpuOrTorchProgram::make_together(con
                                                                              int trainings) const {
   if (device != "cpu") become_torch_program(device, arguments_);
   return LearnerSource::make_together(device, trainings);
-}
-
-void catch_training_signals() {
-  struct sigaction action {};
-  action.sa_handler = remember_signal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGHUP, &action, nullptr);
-}
-
-int training_signal() {
-  return stop_signal;
 }
 
 void visit_train_options(const std::function<void(const CLI::App&)>& visit) {

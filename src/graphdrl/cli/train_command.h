@@ -30,10 +30,6 @@ class CpuOrTorchProgram final : public LearnerSource {
   std::vector<std::string> arguments_;
 };
 
-// Catches SIGINT, SIGTERM and SIGHUP from now on. training_signal() gives the last one caught, 0 if none.
-void catch_training_signals();
-int training_signal();
-
 // Shows the table of its options, for manuals and completions.
 void visit_train_options(const std::function<void(const CLI::App&)>& visit);
 

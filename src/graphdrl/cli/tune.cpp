@@ -6,7 +6,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/cli/train_command.h"
+#include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/tuning.h"
 
@@ -18,6 +18,7 @@ struct TuneCommand {
   TuneOptions options;
   std::string out = "runs/tune";
   std::string resume;
+  bool break_lock = false;
   bool json = false;
 };
 
@@ -86,11 +87,12 @@ std::string to_text(const Tuning& tuning) {
 void tune(TuneCommand command, const LearnerSource& learners) {
   command.options.rounds = parse_rounds(command.rounds);
   const std::string folder = command.resume.empty() ? command.out : command.resume;
+  if (command.break_lock) break_locks(folder);
   Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder, learners) : Tuning::resume(folder);
-  catch_training_signals();
+  catch_stop_signals();
   ProgressDisplay display(stderr, "round", 0);
   const bool finished = tuning.run(
-      [] { return training_signal() != 0; },
+      [] { return stop_flag().load(); },
       [&](std::size_t round, const SideBySideNews& news) {
         const std::string line = fmt::format("{}/{}  {} runs done  {:.0f} steps/s", round + 1,
                                              tuning.options().rounds.size(), news.runs_done, news.samples_per_s);
@@ -100,7 +102,7 @@ void tune(TuneCommand command, const LearnerSource& learners) {
   display.finish();
   if (!finished) {
     print_diagnostic(fmt::format("Stopped; everything is saved. To go on:\n  graphdrl tune --resume {}\n", folder));
-    throw CLI::RuntimeError(128 + training_signal());
+    throw CLI::RuntimeError(128 + stop_signal());
   }
   if (command.json) return print_json(to_json(tuning));
   print_text(to_text(tuning));
@@ -143,16 +145,21 @@ void add_tune_command(CLI::App& app, const LearnerSource& learners) {
                                ->check(not_empty())
                                ->type_name("FOLDER")
                                ->capture_default_str();
-  command->add_option("--resume", options->resume, "Go on with a search; takes none of the options above")
-      ->check(not_empty())
-      ->type_name("FOLDER")
-      ->excludes(rounds)
-      ->excludes(episodes)
-      ->excludes(train_maps)
-      ->excludes(validation_maps)
-      ->excludes(seed)
-      ->excludes(device)
-      ->excludes(out);
+  CLI::Option* const resume =
+      command->add_option("--resume", options->resume, "Go on with a search; takes none of the options above")
+          ->check(not_empty())
+          ->type_name("FOLDER")
+          ->excludes(rounds)
+          ->excludes(episodes)
+          ->excludes(train_maps)
+          ->excludes(validation_maps)
+          ->excludes(seed)
+          ->excludes(device)
+          ->excludes(out);
+  command
+      ->add_flag("--break-lock", options->break_lock,
+                 "With --resume: go on at once though a trainer on another host held a run in the last minute")
+      ->needs(resume);
   command->add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(*command);
   command->callback([options, &learners] { tune(*options, learners); });
