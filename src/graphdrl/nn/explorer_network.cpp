@@ -71,7 +71,7 @@ void write_policy_file(const std::filesystem::path& path, const ExplorerParamete
 
 ExplorerParameters read_explorer(const Safetensors& file) {
   require_description(file, ExplorerParameters::description(), ExplorerParameters::specs());
-  return ExplorerParameters::from_file(file);
+  return ExplorerParameters(file);
 }
 
 void ExplorerNetwork::set_parameters(const ExplorerParameters& parameters) {

@@ -91,7 +91,7 @@ class Checkpoint {
   Rng rng() const;
   template <typename Parameters>
   Parameters parameters(const std::string& prefix) const {
-    return Parameters::from_file(file_, prefix);
+    return Parameters(file_, prefix);
   }
   AdamState adam(std::size_t trainable_count) const;
 

@@ -12,8 +12,6 @@ PaperKernelLearner::PaperKernelLearner(const PaperLearnerOptions& options, Rng& 
     : options_(options),
       online_(rng),
       target_(online_),
-      online_tensors_(online_.tensors()),
-      grad_tensors_(grad_.tensors()),
       adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {
   update();
 }
@@ -37,7 +35,7 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
 
   q_.resize(next_q_.size());
   network_.q_values(batch.graphs, batch.x, q_, keep_scale);
-  network_.move_statistics(batch.graphs.node_count(), online_tensors_);
+  network_.move_statistics(batch.graphs.node_count(), online_);
   double loss = 0;  // L(θ) [paper, eq. 5], a mean of squares
   for (int g = 0; g < graphs; ++g) {
     float* const row = q_.data() + static_cast<std::ptrdiff_t>(g) * kActionCount;
@@ -47,7 +45,7 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
     std::fill_n(row, kActionCount, 0.0f);
     row[action] = 2 * error / static_cast<float>(graphs);
   }
-  network_.backward(batch.graphs, keep_scale, q_, grad_tensors_);
+  network_.backward(batch.graphs, keep_scale, q_, grad_);
   return loss;
 }
 

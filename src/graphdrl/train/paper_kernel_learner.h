@@ -39,8 +39,6 @@ class PaperKernelLearner final : public PaperLearner {
   PaperParameters online_;
   PaperParameters target_;
   PaperParameters grad_;
-  PaperTensors<float> online_tensors_;
-  PaperTensors<float> grad_tensors_;
   PaperNetwork network_;
   PaperNetwork target_network_;
   Adam adam_;
