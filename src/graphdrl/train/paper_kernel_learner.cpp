@@ -3,10 +3,26 @@
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/train/learner_source.h"
-#include "graphdrl/train/paper_td_target.h"
 
 namespace graphdrl {
+
+std::vector<float> draw_keep_scale(int rows, int width, double p, Rng& rng) {
+  std::vector<float> scale(static_cast<std::size_t>(rows) * width);
+  for (float& value : scale) value = rng.uniform() < p ? 0.0f : static_cast<float>(1 / (1 - p));
+  return scale;
+}
+
+std::vector<float> td_targets(const PaperMinibatch& batch, std::span<const float> next_q,
+                              std::span<const float> chooser, double discount) {
+  std::vector<float> targets = batch.rewards;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (batch.terminal[i] != 0) continue;
+    const std::span<const float> row = chooser.subspan(i * kActionCount, kActionCount);
+    const std::ptrdiff_t best = std::max_element(row.begin(), row.end()) - row.begin();
+    targets[i] += static_cast<float>(discount) * next_q[i * kActionCount + best];  // y [paper, eq. 5]
+  }
+  return targets;
+}
 
 PaperKernelLearner::PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng)
     : options_(options),
@@ -25,13 +41,12 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
   const int graphs = batch.graphs.graph_count();
   next_q_.resize(static_cast<std::size_t>(graphs) * kActionCount);
   target_network_.q_values(batch.graphs, batch.next_x, next_q_);
-  TdBatch td{.rewards = batch.rewards, .terminal = batch.terminal, .next_q = next_q_, .chooser = next_q_};
   if (options_.double_dqn) {
     next_online_.resize(next_q_.size());
     network_.q_values(batch.graphs, batch.next_x, next_online_);
-    td.chooser = next_online_;
   }
-  const std::vector<float> targets = td_targets(td, options_.discount);
+  const std::vector<float> targets =
+      td_targets(batch, next_q_, options_.double_dqn ? next_online_ : next_q_, options_.discount);
 
   q_.resize(next_q_.size());
   network_.q_values(batch.graphs, batch.x, q_, keep_scale);

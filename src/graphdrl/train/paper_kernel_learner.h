@@ -9,6 +9,14 @@
 
 namespace graphdrl {
 
+// One-step targets for DQN and Double DQN [paper, eq. 5; van Hasselt et al. 2016]: [B],
+//   y = r + discount · (1 - terminal) · Q_target(s', a*)
+// where a* maximises Q_target(s', ·) (DQN) or Q_online(s', ·) (Double DQN), over all actions: blocked moves can be
+// chosen, so they are not masked. A budget that runs out is no terminal state.
+// next_q: [B, A], from the target network; chooser: [B, A], what a* maximises: next_q itself, or the online network's.
+std::vector<float> td_targets(const PaperMinibatch& batch, std::span<const float> next_q,
+                              std::span<const float> chooser, double discount);
+
 // The online and the target network and the optimiser. Everything it does is the same for any number of threads.
 class PaperKernelLearner final : public PaperLearner {
  public:

@@ -10,7 +10,7 @@
 
 #include "graphdrl/env/world.h"
 #include "graphdrl/train/checkpoint.h"
-#include "graphdrl/train/learner_source.h"
+#include "graphdrl/train/paper_learner.h"
 #include "graphdrl/train/options.h"
 
 namespace graphdrl {
@@ -48,6 +48,10 @@ class Recipe {
 
   virtual void write_policy(const std::filesystem::path& path) const = 0;
 };
+
+// That of the preset explorer: a unit is a round of random walks, whose states search values, and of learning steps on
+// what is remembered. `rng` must outlive it.
+std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng);
 
 // The recipe of options.preset, at its beginning; `rng` must outlive it. `from`: the checkpoint to be restored, if any,
 // which holds the maps. worlds: instead of options.maps, where there are any. Throws Error on maps that do not fit the

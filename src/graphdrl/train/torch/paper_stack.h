@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "graphdrl/train/adam.h"
-#include "graphdrl/train/learner_source.h"
 #include "graphdrl/train/paper_learner.h"
 #include "graphdrl/train/torch/device_stream.h"
 #include "graphdrl/train/torch/known_graphs.h"
