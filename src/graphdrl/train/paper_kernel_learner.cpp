@@ -35,7 +35,7 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
   target_network_.q_values(batch.graphs, batch.next_x, next_q_);
   if (options_.double_dqn) {
     next_online_.resize(next_q_.size());
-    network_.q_values(batch.graphs, batch.next_x, next_state_.online);
+    network_.q_values(batch.graphs, batch.next_x, next_online_);
   }
   const std::vector<float> targets =
       td_targets(batch, next_q_, options_.double_dqn ? next_online_ : next_q_, options_.discount);
