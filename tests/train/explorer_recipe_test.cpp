@@ -1,5 +1,3 @@
-#include "graphdrl/train/explorer_recipe.h"
-
 #include <gmock/gmock.h>
 
 #include "train/training.h"

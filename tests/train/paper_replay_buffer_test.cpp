@@ -5,7 +5,6 @@
 #include <deque>
 
 #include "graphdrl/io/file.h"
-#include "graphdrl/train/paper_epsilon.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -82,13 +81,6 @@ TEST(PaperReplayBuffer, RefusesACheckpointThatDoesNotFit) {
   EXPECT_NE(error_of([&] { PaperReplayBuffer(4, 2).restore(file, any); }), "");
   EXPECT_EQ(error_of([&] { PaperReplayBuffer(4, 3).restore(file, any); }), "");
   EXPECT_NE(error_of([&] { PaperReplayBuffer(4, 3).restore(file, [](const Transition&) { return false; }); }), "");
-}
-
-TEST(PaperEpsilon, RunsFromTheFirstEpisodeToTheLast) {
-  EXPECT_DOUBLE_EQ(paper_epsilon(0, 10'000), std::exp(-0.1));
-  EXPECT_DOUBLE_EQ(paper_epsilon(9'999, 10'000), std::exp(-3.0));
-  EXPECT_DOUBLE_EQ(paper_epsilon(1, 3), std::exp(-1.55));
-  EXPECT_DOUBLE_EQ(paper_epsilon(0, 1), std::exp(-0.1));
 }
 
 }  // namespace

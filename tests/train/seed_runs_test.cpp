@@ -74,7 +74,7 @@ TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
   set_threads(2);
   SeedRuns::start(GetParam(), {1, 2}, folder / "all");
   int sessions = 0;
-  const int questions = GetParam().preset == kPaperPreset ? kShortPaperSteps / 2 : 3;
+  const int questions = GetParam().preset == kPaperPreset ? kShortPaperSteps / 2 : 70;
   // Stopped after so many questions, on whatever thread.
   for (bool finished = false; !finished; ++sessions) {
     std::atomic<int> asked = 0;

@@ -1,7 +1,7 @@
 // The subcommands of `graphdrl`, one per source file beside this one. `learners` must outlive the app.
 #pragma once
 
-#include "graphdrl/train/learner_source.h"
+#include "graphdrl/train/paper_learner.h"
 
 namespace CLI {
 class App;

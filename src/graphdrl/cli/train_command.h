@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "graphdrl/train/learner_source.h"
+#include "graphdrl/train/paper_learner.h"
 
 namespace CLI {
 class App;

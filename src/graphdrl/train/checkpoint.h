@@ -83,6 +83,7 @@ class Checkpoint {
   }
   std::int64_t size_of(const std::string& name) const;
   // Metadata. Gives a discarded value for what is no JSON.
+  bool has_json(const std::string& key) const { return file_.metadata().contains(key); }
   nlohmann::ordered_json json(const std::string& key) const;
 
   // Whether it holds the options and the metrics.
@@ -91,7 +92,7 @@ class Checkpoint {
   Rng rng() const;
   template <typename Parameters>
   Parameters parameters(const std::string& prefix) const {
-    return Parameters::from_file(file_, prefix);
+    return Parameters(file_, prefix);
   }
   AdamState adam(std::size_t trainable_count) const;
 

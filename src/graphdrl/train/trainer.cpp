@@ -16,6 +16,8 @@ namespace {
 
 constexpr const char* kOptionsKey = "options";
 constexpr const char* kMetrics = "metrics";
+constexpr const char* kRollbacksKey = "rollbacks";
+constexpr std::int64_t kMostRollbacks = 3;
 
 void say(const RunDirectory& run, const std::string& what) {
   note(run.path().string() + ": " + what);
@@ -49,18 +51,30 @@ std::optional<Checkpoint> newest_checkpoint(const RunDirectory& run) {
 
 Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const LearnerSource& learners,
                  std::vector<World> worlds)
-    : options_(options),
-      run_(std::move(run)),
-      rng_(options.seed),
-      recipe_(make_recipe(options, rng_, from, learners, std::move(worlds))),
-      units_(units_of(options)) {
-  if (from == nullptr) return;
-  progress_ = from->progress();
-  if (progress_.done > units_.count) {
-    from->fail(fmt::format("the checkpoint is not of this run: it has done more {}s than there are", units_.name));
+    : options_(options), run_(std::move(run)), learners_(learners), rng_(options.seed), units_(units_of(options)) {
+  if (from != nullptr) {
+    restore(*from);
+  } else {
+    recipe_ = make_recipe(options_, rng_, nullptr, learners_, std::move(worlds));
   }
-  recipe_->restore(*from, progress_);
-  rng_ = from->rng();
+}
+
+void Trainer::restore(const Checkpoint& from) {
+  progress_ = from.progress();
+  if (progress_.done > units_.count) {
+    from.fail(fmt::format("the checkpoint is not of this run: it has done more {}s than there are", units_.name));
+  }
+  if (from.has_json(kRollbacksKey) && rollbacks_ == 0) {
+    from.read_number(from.json(kRollbacksKey), "count", rollbacks_);
+  }
+  TrainOptions slower = options_;
+  slower.learning_rate = std::ldexp(options_.learning_rate, -static_cast<int>(rollbacks_));
+  recipe_ = make_recipe(slower, rng_, &from, learners_);
+  recipe_->restore(from, progress_);
+  rng_ = from.rng();
+  if (!from.holds_options()) return;
+  const auto lines = from.get<char>(kMetrics);
+  metrics_.assign(lines.begin(), lines.end());
 }
 
 void Trainer::check(const TrainOptions& options, const LearnerSource& learners) {
@@ -99,6 +113,7 @@ std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const LearnerS
   if (from) from->require_preset(options.preset);
   std::unique_ptr<Trainer> trainer(new Trainer(options, run, from ? &*from : nullptr, learners, {}));
   trainer->lock_ = std::move(lock);
+  trainer->saved_ = trainer->progress_;
   if (!from) {
     trainer->save();
   } else if (state.finished()) {
@@ -121,8 +136,6 @@ void Trainer::mend(const RunState& state, const Checkpoint& from) {
     metrics_ = metrics_until(run_.metrics(), counter, progress_.done);
     return;
   }
-  const auto lines = from.get<char>(kMetrics);
-  metrics_.assign(lines.begin(), lines.end());
   const auto config = config_of(run_);
   if (!config || config_json(*config) != config_json(options_)) {
     say(run_, run_.config().filename().string() + " is missing or not what the run was begun with: written anew");
@@ -149,14 +162,36 @@ bool Trainer::run(const std::function<bool()>& stop, const std::function<void(co
     throw MachineError({.what = fmt::format("{}; saved up to {} {}; to go on: graphdrl train --resume {}", what,
                                             units_.name, saved_.done, run_.path().string())});
   };
-  try {
-    return train(stop, tell);
-  } catch (const MachineError& error) {
-    refuse(error.what());
-  } catch (const std::bad_alloc&) {
-    refuse("out of memory");
+  while (true) {
+    try {
+      return train(stop, tell);
+    } catch (const NotFinite& failure) {
+      go_back(failure);
+    } catch (const MachineError& error) {
+      refuse(error.what());
+    } catch (const std::bad_alloc&) {
+      refuse("out of memory");
+    }
   }
-  return false;
+}
+
+// To the last checkpoint, with half the learning rate; the checkpoint says so from then on.
+void Trainer::go_back(const NotFinite& failure) {
+  const std::string checkpoint = fmt::format("{}, of {} {}", run_.checkpoint().string(), units_.name, saved_.done);
+  const std::string what = fmt::format("{}; the last good checkpoint: {}", failure.what(), checkpoint);
+  if (options_.on_nan != kRollback) {
+    throw NotFinite({.what = what, .expected = "a smaller --learning-rate, or --on-nan rollback"});
+  }
+  if (rollbacks_ == kMostRollbacks) {
+    throw NotFinite(
+        {.what = what, .expected = fmt::format("a smaller --learning-rate: it was halved {} times", rollbacks_)});
+  }
+  ++rollbacks_;
+  say(run_, fmt::format("{}; going on from there with the learning rate halved, {} of {} times", what, rollbacks_,
+                        kMostRollbacks));
+  restore(newest_checkpoint(run_).value());
+  metrics_file_.reset();
+  save();
 }
 
 bool Trainer::train(const std::function<bool()>& stop, const std::function<void(const TrainingNews&)>& tell) {
@@ -171,6 +206,9 @@ bool Trainer::train(const std::function<bool()>& stop, const std::function<void(
   bool stopped = false;
   while (!finished() && !stopped && recipe_->run_unit(progress_, must_stop)) {
     ++progress_.done;
+    if (const std::string tensor = recipe_->not_finite(); !tensor.empty()) {
+      throw NotFinite({.what = fmt::format("{} is not finite after {} {}", tensor, units_.name, progress_.done)});
+    }
     stopped = must_stop();
     progress_.elapsed_s = before.elapsed_s + session.seconds();
     const double rate = static_cast<double>(progress_.samples - before.samples) / std::max(session.seconds(), 1e-9);
@@ -212,6 +250,7 @@ void Trainer::save() {
   writer.add(progress_);
   writer.add(rng_);
   writer.add_json(kOptionsKey, config_json(options_));
+  if (rollbacks_ > 0) writer.add_json(kRollbacksKey, {{"count", rollbacks_}});
   writer.add(kMetrics, std::vector<char>(metrics_.begin(), metrics_.end()));
   const std::string checkpoint = writer.content();
   if (keeps_checkpoint_) {

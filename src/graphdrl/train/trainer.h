@@ -33,6 +33,7 @@ class Trainer {
   // options.maps, where there are any.
   static std::unique_ptr<Trainer> start(const TrainOptions& options, const RunDirectory& run,
                                         const LearnerSource& learners = kCpuLearners, std::vector<World> worlds = {});
+  // `learners` must outlive the trainer.
 
   // Goes on with the run in a directory, from its checkpoint; from the one before it where that is missing or damaged;
   // from the beginning where the run has no checkpoint yet. Everything else is mended from the checkpoint, with a note.
@@ -57,6 +58,8 @@ class Trainer {
 
   bool finished() const { return progress_.done == units_.count; }
   void mend(const RunState& state, const Checkpoint& from);
+  void restore(const Checkpoint& from);
+  void go_back(const NotFinite& failure);
   bool train(const std::function<bool()>& stop, const std::function<void(const TrainingNews&)>& tell);
   // Gives what was written.
   std::vector<Metric> log();
@@ -64,11 +67,13 @@ class Trainer {
 
   TrainOptions options_;
   RunDirectory run_;
+  const LearnerSource& learners_;
   std::unique_ptr<RunLock> lock_;
   Rng rng_;
   std::unique_ptr<Recipe> recipe_;
   TrainingUnits units_;
   TrainingProgress progress_;
+  std::int64_t rollbacks_ = 0;                 // each of which has halved the learning rate
   std::string metrics_;                        // the lines of earlier sessions
   std::unique_ptr<MetricsFile> metrics_file_;  // of this session
   std::unique_ptr<EventWriter> events_;
