@@ -29,6 +29,10 @@ add_library(graphdrl_cairo INTERFACE)
 target_include_directories(graphdrl_cairo SYSTEM INTERFACE ${CAIRO_INCLUDE_DIR})
 target_link_libraries(graphdrl_cairo INTERFACE ${CAIRO_LIBRARY})
 
+# xxHash's header alone is used.
+find_path(XXHASH_INCLUDE_DIR xxhash.h)
+require("${XXHASH_INCLUDE_DIR}" xxHash libxxhash-dev)
+
 # Neither does cpp-httplib.
 find_path(HTTPLIB_INCLUDE_DIR httplib.h)
 find_library(HTTPLIB_LIBRARY cpp-httplib)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/io/checksum.h"
 #include "graphdrl/io/safetensors.h"
 
 namespace graphdrl {
@@ -16,7 +17,7 @@ inline std::string with_checksum(const std::string& content) {
   auto header =
       nlohmann::ordered_json::parse(content.substr(sizeof(std::uint64_t), header_end - sizeof(std::uint64_t)));
   Metadata metadata = header.at("__metadata__");
-  metadata.erase("crc32c");
+  metadata.erase(kChecksumKey);
   std::vector<TensorView> tensors;
   const std::string_view data = std::string_view(content).substr(header_end);
   for (const auto& [name, entry] : header.items()) {

@@ -108,12 +108,13 @@ TEST(Safetensors, WithAChecksumIsRefusedWithAnyFlippedBit) {
 TEST(Safetensors, HaveAChecksumThatOthersCanCompute) {
   const std::string data(4, '\0');
   const std::string sum =
-      crc32c_text({R"({"__metadata__":{"k":"v"},"a":{"data_offsets":[0,4],"dtype":"F32","shape":[1]}})", data});
+      checksum({R"({"__metadata__":{"k":"v"},"a":{"data_offsets":[0,4],"dtype":"F32","shape":[1]}})", data});
   const std::string header =
-      R"({ "a": {"dtype": "F32", "shape": [1], "data_offsets": [0, 4]}, "__metadata__": {"crc32c": ")" + sum +
+      R"({ "a": {"dtype": "F32", "shape": [1], "data_offsets": [0, 4]}, "__metadata__": {"xxh3_64": ")" + sum +
       R"(", "k": "v"}})";
   EXPECT_EQ(error_for(file_with(header, 4)), "");
-  EXPECT_EQ(crc32c_text({"1234", "56789"}), "e3069283");  // of RFC 3720's polynomial
+  EXPECT_EQ(checksum({}), "2d06800538d394c2");  // the hash of nothing, in xxHash's specification
+  EXPECT_EQ(checksum({"1234", "56789"}), checksum({"123456789"}));
 }
 
 TEST(Safetensors, EveryTruncationIsAnErrorAndNoDamageACrash) {

@@ -152,6 +152,7 @@ struct SavedAt {
 TEST(PowerCut, TakesNothingThatWasSaved) {
   TrainOptions options = short_paper();
   options.checkpoint_every = 1;
+  options.episodes = 3;
   const TemporaryFolder folder;
   const Bytes whole = train_in(folder / "whole", options);
   const RunDirectory run(folder / "cut/run");
@@ -171,7 +172,7 @@ TEST(PowerCut, TakesNothingThatWasSaved) {
   Rng rng(1);
   int resumed = 0;
   for (std::size_t events = 0; events <= disk->events(); ++events) {
-    for (int variant = 0; variant < 3; ++variant) {
+    for (int variant = 0; variant < 2; ++variant) {
       disk->cut(events, run.path(), rng);
       std::int64_t done = -1;
       for (const SavedAt& save : saved) {
@@ -180,13 +181,13 @@ TEST(PowerCut, TakesNothingThatWasSaved) {
       if (done < 0 && !run.holds_a_run()) continue;
       const auto trainer = Trainer::resume(run);
       EXPECT_GE(trainer->progress().done, done) << events;
-      if (rng.below(4) != 0 && events != disk->events()) continue;  // to train takes longer
+      if (rng.below(8) != 0 && events != disk->events()) continue;  // to train takes longer
       ++resumed;
       EXPECT_TRUE(train(*trainer));
       EXPECT_TRUE(bytes_of(run) == whole) << events;
     }
   }
-  EXPECT_GT(resumed, 20);
+  EXPECT_GT(resumed, 5);
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ TEST_F(FinishedRunFiles, ShowEveryFlippedBit) {
   Rng rng(3);
   for (const auto& [name, content] : content_) {
     if (name == "checkpoint.previous.safetensors") continue;
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < 40; ++i) {
       std::string flipped = content;
       const std::size_t at = rng.below(static_cast<std::uint32_t>(content.size()));
       flipped[at] = static_cast<char>(flipped[at] ^ (1 << rng.below(8)));

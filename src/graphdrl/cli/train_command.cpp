@@ -15,6 +15,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
+#include "graphdrl/io/checksum.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/options.h"
@@ -52,7 +53,7 @@ class ConfigReader : public CLI::ConfigTOML {
     if (!json.is_object()) throw Error({.what = "the configuration is not valid JSON", .where = "--config"});
     std::vector<CLI::ConfigItem> result;
     for (const auto& [key, value] : json.items()) {
-      if (key == "layout" || key == "crc32c") continue;  // of seeds.json
+      if (key == "layout" || key == kChecksumKey) continue;  // of seeds.json
       CLI::ConfigItem item;
       item.name = flag_of(key).substr(2);
       for (const Json& one : value.is_array() ? value : Json::array({value})) {

@@ -14,19 +14,18 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kDocumentLayoutKey = "layout";
-constexpr const char* kSumKey = "crc32c";
 constexpr int kDocumentLayout = 2;  // since it there is a checksum; documents before it have no layout
 constexpr auto kReplace = OrderedJson::error_handler_t::replace;
 
 std::string sum_of(const OrderedJson& object) {
-  return crc32c_text({nlohmann::json(object).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+  return checksum({nlohmann::json(object).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
 }  // namespace
 
 void write_checked_json(const std::filesystem::path& path, OrderedJson object) {
   object[kDocumentLayoutKey] = kDocumentLayout;
-  object[kSumKey] = sum_of(object);
+  object[kChecksumKey] = sum_of(object);
   write_file(path, object.dump(2, ' ', false, kReplace) + '\n');
 }
 
@@ -36,10 +35,10 @@ OrderedJson read_checked_json(const std::filesystem::path& path) {
   require_shallow_json(text, source);
   OrderedJson object = OrderedJson::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!object.is_object()) throw Error({.what = "not a whole document", .expected = "a JSON object", .where = source});
-  if (const auto found = object.find(kSumKey); found != object.end()) {
-    const OrderedJson checksum = *found;
+  if (const auto found = object.find(kChecksumKey); found != object.end()) {
+    const OrderedJson expected = *found;
     object.erase(found);
-    if (checksum == sum_of(object) && object.erase(kDocumentLayoutKey) > 0) return object;
+    if (expected == sum_of(object) && object.erase(kDocumentLayoutKey) > 0) return object;
   } else if (!object.contains(kDocumentLayoutKey)) {
     note(source + ": no checksum: whether the file is undamaged cannot be told");
     return object;

@@ -6,8 +6,8 @@
 
 namespace graphdrl {
 
-// Writes an object and, as its last keys, `layout` and `crc32c`, which is of the object without it, its keys sorted and
-// without spaces. Throws Error.
+// Writes an object and, as its last keys, `layout` and `xxh3_64`, which is of the object without it, its keys sorted
+// and without spaces. Throws Error.
 void write_checked_json(const std::filesystem::path& path, nlohmann::ordered_json object);
 
 // Gives the object without these keys. Throws Error where there is none, and where the checksum is not its own. Notes

@@ -20,7 +20,6 @@ static_assert(std::endian::native == std::endian::little, "safetensors files are
 
 using Json = nlohmann::json;
 constexpr const char* kMetadataKey = "__metadata__";
-constexpr const char* kChecksumKey = "crc32c";
 
 // Bytes per element; 0 for a type the format does not know.
 std::size_t dtype_size(std::string_view dtype) {
@@ -38,7 +37,7 @@ std::size_t dtype_size(std::string_view dtype) {
 
 // Of a header without its checksum.
 std::string checksum_of(const Json& header, std::string_view data) {
-  return crc32c_text({header.dump(), data});
+  return checksum({header.dump(), data});
 }
 
 // One array's line of the header, checked but for its neighbours.
@@ -141,9 +140,9 @@ Safetensors Safetensors::parse(std::string content, const std::string& source) {
       file.metadata_[key] = value;
     }
   }
-  if (const auto checksum = file.metadata_.extract(kChecksumKey)) {
+  if (const auto expected = file.metadata_.extract(kChecksumKey)) {
     header[kMetadataKey].erase(kChecksumKey);
-    if (checksum.mapped() != checksum_of(header, std::string_view(content).substr(file.data_begin_))) {
+    if (expected.mapped() != checksum_of(header, std::string_view(content).substr(file.data_begin_))) {
       fail(source, "the file is damaged: its checksum is not that of its content");
     }
     file.has_checksum_ = true;

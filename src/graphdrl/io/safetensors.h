@@ -1,7 +1,7 @@
 // Safetensors files: named arrays behind a JSON header. Reading one never executes anything.
 // Format: u64 header length, JSON header {name: {dtype, shape, data_offsets}, "__metadata__": {key: text}}, data;
 // everything little-endian [github.com/huggingface/safetensors, "Format"]. Files written here have a checksum among the
-// metadata: `crc32c`, of the header without it, its keys sorted and without spaces, and of the data behind it.
+// metadata: `xxh3_64`, of the header without it, its keys sorted and without spaces, and of the data behind it.
 #pragma once
 
 #include <algorithm>

@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <boost/crc.hpp>
 #include <chrono>
 
 #include "event.pb.h"
-#include "graphdrl/io/checksum.h"
 
 namespace graphdrl {
 namespace {
 
 // TFRecord's checksum: CRC-32C, rotated and offset, so that a checksum of checksums stays sound.
 std::uint32_t masked_crc(std::string_view data) {
-  const std::uint32_t value = crc32c({data});
+  boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc;
+  crc.process_bytes(data.data(), data.size());
+  const std::uint32_t value = crc.checksum();
   return ((value >> 15) | (value << 17)) + 0xa282ead8U;
 }
 

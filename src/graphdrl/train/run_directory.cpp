@@ -21,7 +21,7 @@ RunRecord read_record(const RunDirectory& run) {
         .files = {}};
     for (const auto& [name, sum] : json.at("files").items()) {
       if (std::filesystem::path(name).filename() != name) continue;  // of another folder
-      record.files[name] = {.bytes = sum.at("bytes"), .crc32c = sum.at("crc32c")};
+      record.files[name] = {.bytes = sum.at("bytes"), .sum = sum.at(kChecksumKey)};
     }
     return record;
   } catch (const Json::exception&) {
@@ -47,7 +47,7 @@ void RunDirectory::require_new() const {
 }
 
 FileSum FileSum::of(std::string_view content) {
-  return {.bytes = content.size(), .crc32c = crc32c_text({content})};
+  return {.bytes = content.size(), .sum = checksum({content})};
 }
 
 void RunRecord::add(const std::filesystem::path& file, std::string_view content) {
@@ -56,7 +56,7 @@ void RunRecord::add(const std::filesystem::path& file, std::string_view content)
 
 void write_record(const RunDirectory& run, const RunRecord& record) {
   Json files = Json::object();
-  for (const auto& [name, sum] : record.files) files[name] = {{"bytes", sum.bytes}, {"crc32c", sum.crc32c}};
+  for (const auto& [name, sum] : record.files) files[name] = {{"bytes", sum.bytes}, {kChecksumKey, sum.sum}};
   write_checked_json(run.record(), {{"finished", record.finished},
                                     {"done", record.progress.done},
                                     {"samples", record.progress.samples},

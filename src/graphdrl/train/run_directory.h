@@ -43,7 +43,7 @@ class RunDirectory {
 
 struct FileSum {
   std::uint64_t bytes = 0;
-  std::string crc32c;
+  std::string sum;  // checksum()
 
   static FileSum of(std::string_view content);
   friend bool operator==(const FileSum&, const FileSum&) = default;
