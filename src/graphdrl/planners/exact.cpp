@@ -6,7 +6,7 @@
 
 #include "graphdrl/graph/search.h"
 #include "graphdrl/planners/exact_search.h"
-#include "graphdrl/planners/lp_bound.h"
+#include "graphdrl/planners/bound.h"
 
 namespace graphdrl {
 

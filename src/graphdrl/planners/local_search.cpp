@@ -9,7 +9,6 @@
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/bound.h"
-#include "graphdrl/planners/lp_bound.h"
 
 namespace graphdrl {
 namespace {

@@ -1,4 +1,4 @@
-#include "graphdrl/planners/lp_bound.h"
+#include "graphdrl/planners/bound.h"
 
 #include <algorithm>
 #include <cmath>
