@@ -139,8 +139,9 @@ std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed
 }
 
 std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) {
-  if (spec.kind == PolicyKind::kRandom) return std::make_unique<RandomPolicy>(seed);
-  if (spec.kind == PolicyKind::kRandomWalk) return std::make_unique<RandomWalkPolicy>(seed);
+  if (spec.kind == PolicyKind::kRandom || spec.kind == PolicyKind::kRandomWalk) {
+    return std::make_unique<RandomPolicy>(seed, /*blocked_too=*/spec.kind == PolicyKind::kRandom);
+  }
   if (auto planner = make_planner(spec, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
   return std::make_unique<PaperPolicy>(std::get<PaperParameters>(read_policy(spec.file)));
 }
