@@ -93,6 +93,23 @@ TEST(PlannerPolicy, PlansAnewOnceMoreIsKnown) {
   EXPECT_EQ(plans, 2);
 }
 
+TEST(PlannerPolicy, PlansAnewOnceOthersClaimNodes) {
+  int plans = 0;
+  int from = 0;
+  PlannerPolicy policy(std::make_unique<CountingPlanner>(plans, from));
+  const View path = path_known(5, 1, 0);
+  Seen middle(path, {2}, 2);
+  EXPECT_EQ(chosen(policy, middle), 1);
+  NodeSet claimed(5);
+  claimed.insert(0);
+  claimed.insert(1);
+  middle.task = middle.task.without(claimed);
+  EXPECT_EQ(chosen(policy, middle), 3) << "where something is left";
+  EXPECT_EQ(chosen(policy, middle), 3);
+  EXPECT_EQ(plans, 2);
+  EXPECT_EQ(from, 1) << "it goes on from the last plan";
+}
+
 TEST(PlannerPolicy, TakesNoPlanOfAnotherWorld) {
   int plans = 0;
   int from = 0;

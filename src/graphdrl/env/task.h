@@ -84,6 +84,8 @@ class Task {
   int ground_count() const { return ground_.empty() ? 1 : ground_.count(); }
   // Claimed nodes are worth nothing any more, whoever visited them.
   bool is_claimed(NodeId node) const { return !claimed_.empty() && claimed_.contains(node); }
+  // Whether ground and claims are those of the other.
+  bool has_sets_of(const Task& other) const { return ground_ == other.ground_ && claimed_ == other.claimed_; }
   // What the first visit of a node is worth, the start among them.
   double prize(NodeId node) const { return is_claimed(node) ? 0 : view_.prize(node); }
   // Whether nodes may be claimed that are no ground.

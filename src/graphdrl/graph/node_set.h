@@ -28,6 +28,8 @@ class NodeSet {
     return sum;
   }
 
+  friend bool operator==(const NodeSet&, const NodeSet&) = default;
+
   // For files: bit i % 64 of word i / 64 stands for node i.
   std::vector<std::uint64_t>& words() { return words_; }
   const std::vector<std::uint64_t>& words() const { return words_; }

@@ -44,29 +44,24 @@ std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t most
 
 // What stands behind the first colon of a name.
 void parse_parameters(const std::string& name, std::string_view text, PolicySpec& spec) {
+  const auto check = [&](bool good, const char* what, const std::string& expected) {
+    if (!good) throw Error({.what = what, .expected = expected, .got = in_quotes(name, 200)});
+  };
   if (spec.kind == PolicyKind::kSearch) {
     const auto iterations = parse_count(text, kMostIterations);
-    if (!iterations) {
-      throw Error({.what = "bad number of iterations",
-                   .expected = fmt::format("search:N with N from 1 to {}", kMostIterations),
-                   .got = in_quotes(name, 200)});
-    }
+    check(iterations.has_value(), "bad number of iterations",
+          fmt::format("search:N with N from 1 to {}", kMostIterations));
     spec.iterations = *iterations;
     return;
   }
   if (const std::size_t colon = text.find(':'); spec.kind == PolicyKind::kGuided && colon != std::string_view::npos) {
     spec.file = text.substr(colon + 1);
     text = text.substr(0, colon);
-    if (spec.file.empty()) {
-      throw Error({.what = "no policy file is named", .expected = "guided:W:FILE", .got = in_quotes(name, 200)});
-    }
+    check(!spec.file.empty(), "no policy file is named", "guided:W:FILE");
   }
   const auto width = parse_count(text, kMaxBeamWidth);
-  if (!width) {
-    throw Error({.what = "bad beam width",
-                 .expected = fmt::format("{}:W with W from 1 to {}", name.substr(0, name.find(':')), kMaxBeamWidth),
-                 .got = in_quotes(name, 200)});
-  }
+  check(width.has_value(), "bad beam width",
+        fmt::format("{}:W with W from 1 to {}", name.substr(0, name.find(':')), kMaxBeamWidth));
   spec.width = static_cast<int>(*width);
 }
 
@@ -74,8 +69,8 @@ std::unique_ptr<Planner> explorer_planner(SharedExplorer parameters) {
   return std::make_unique<ExplorerPlanner>(std::make_shared<ExplorerScorer>(std::move(parameters)));
 }
 
-std::unique_ptr<Planner> search_planner(const LocalSearchOptions& options = {}) {
-  return std::make_unique<LocalSearchPlanner>(options, explorer_planner(builtin_explorer()));
+std::unique_ptr<Planner> search_planner(std::int64_t iterations = 0, std::uint64_t seed = 1) {
+  return std::make_unique<LocalSearchPlanner>(iterations, seed, explorer_planner(builtin_explorer()));
 }
 
 SharedExplorer read_explorer_parameters(const std::string& file) {
@@ -127,7 +122,7 @@ std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed
     case PolicyKind::kExplorer:
       return explorer_planner(builtin_explorer());
     case PolicyKind::kSearch:
-      return search_planner({.iterations = spec.iterations, .seed = seed});
+      return search_planner(spec.iterations, seed);
     case PolicyKind::kExact:
       return std::make_unique<ExactPlanner>(search_planner());
     case PolicyKind::kFile:
@@ -139,8 +134,9 @@ std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed
 }
 
 std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) {
-  if (spec.kind == PolicyKind::kRandom) return std::make_unique<RandomPolicy>(seed);
-  if (spec.kind == PolicyKind::kRandomWalk) return std::make_unique<RandomWalkPolicy>(seed);
+  if (spec.kind == PolicyKind::kRandom || spec.kind == PolicyKind::kRandomWalk) {
+    return std::make_unique<RandomPolicy>(seed, /*blocked_too=*/spec.kind == PolicyKind::kRandom);
+  }
   if (auto planner = make_planner(spec, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
   return std::make_unique<PaperPolicy>(std::get<PaperParameters>(read_policy(spec.file)));
 }

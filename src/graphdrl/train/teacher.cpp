@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "graphdrl/nn/explorer_network.h"
-#include "graphdrl/planners/annealing.h"
 #include "graphdrl/planners/baselines.h"
 
 namespace graphdrl {
@@ -21,7 +20,7 @@ constexpr int kManySteps = 1500;
 
 }  // namespace
 
-Teacher::Found Teacher::improve(const Targets& targets, double limit, double share, double from) {
+Tour Teacher::improve(const Targets& targets, double limit, double share, double from) {
   std::vector<int> order;
   double cost = 0;
   int last = 0;
@@ -34,19 +33,20 @@ Teacher::Found Teacher::improve(const Targets& targets, double limit, double sha
     cost = there;
     last = target;
   }
-  Annealing annealing(targets, limit, rng_.next());
-  annealing.start(order, std::vector<double>(order.size() + 1, kNoLimit));
+  const std::size_t links = order.size() + 1;
+  Annealing annealing(targets, limit, rng_.next(),
+                      {.order = std::move(order), .links = std::vector<double>(links, kNoLimit)});
   const auto steps = static_cast<std::int64_t>(share * std::clamp(steps_ * targets.end(), kFewSteps, kManySteps));
   for (std::int64_t step = 0; step < steps; ++step) {
     annealing.step(from + (1 - from) * static_cast<double>(step) / static_cast<double>(steps));
   }
-  return {.order = annealing.best(), .visits = annealing.best_prize(), .cost = annealing.best_cost()};
+  return annealing.best();
 }
 
 void Teacher::search(const Task& task, double share, double from) {
   targets_.clear();
   const Targets& targets = targets_.emplace_back(task);
-  const Found found = improve(targets, task.limit(), share, from);
+  const Tour found = improve(targets, task.limit(), share, from);
   best_.clear();
   for (const int target : found.order) best_.push_back(targets.node(target));
 }
@@ -90,8 +90,8 @@ NodeId Teacher::next_visit(const Task& task) {
 double Teacher::value(const Task& task, const FirstVisit& first) {
   const Targets& before = targets_.front();
   const Targets targets = before.after(before.target_of(first.node));
-  const Found found = improve(targets, task.limit() - first.cost, 1, kLabelFrom);
-  const double visits = 1 + found.visits;
+  const Tour found = improve(targets, task.limit() - first.cost, 1, kLabelFrom);
+  const double visits = 1 + found.prize;
   const double edges = (first.cost + found.cost) / task.view().open().mean_cost();
   return visits - kWorthOfCost * (edges - visits);
 }
