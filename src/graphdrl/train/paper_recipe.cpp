@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/paper_epsilon.h"
