@@ -2,7 +2,6 @@
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/io/attributes.h"

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/eval/rollout.h"
 #include "support.h"
 

@@ -9,7 +9,6 @@
 #include "../support.h"
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/episode.h"
-#include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/planners/annealing.h"
 #include "graphdrl/planners/moves.h"

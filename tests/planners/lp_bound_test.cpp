@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <optional>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/exact.h"

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/local_search.h"

@@ -11,7 +11,6 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
-#include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/plan_files.h"

@@ -5,9 +5,9 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/env/budget.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"
 

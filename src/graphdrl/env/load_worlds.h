@@ -1,6 +1,8 @@
-// Worlds and their nodes as users name them.
+// Worlds as users hand them over, in files or arrays, and their nodes as users name them.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,18 @@ std::vector<World> load_worlds(const std::vector<std::string>& sources, const Ma
 
 // The one map of a source. Throws Error where it holds more.
 World load_one_world(const std::string& source, const MapOptions& options = {});
+
+// The edges of a graph of N nodes and E edges.
+struct EdgeArrays {
+  std::int64_t node_count = 0;
+  std::span<const std::int64_t> edges = {};  // [2E], pairs of nodes
+  std::span<const double> costs = {};        // [E]; empty where each is 1
+  bool directed = false;
+};
+
+// The world of these edges; `map` has all but the graph, and what is empty in it is not there. Throws Error on lengths
+// that do not fit, nodes that there are not, and numbers that cannot be.
+World world_of(std::string name, const EdgeArrays& arrays, GraphMap map);
 
 // A node as users name it: its label, "#5" for the node id 5, and in a world without labels also "5", or "row,col" on a
 // grid. A number is no node id in a world with labels, where it could be either. Throws Error, with the node's role

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/graph/grid_transforms.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/map_text.h"
@@ -25,7 +24,7 @@ void refuse_option(const char* option, const std::string& what, const std::strin
 void shape_grid(GridMap& map, const MapOptions& options, const std::string& source) {
   const double side = map.frame ? map.frame->cell_size : 1;
   const std::string unit = map.frame ? map.frame->unit : "cells";
-  const double free_before = static_cast<double>(count_free(map)) * side * side;
+  const double free_before = static_cast<double>(map.free_count()) * side * side;
   double scale = 1;
   if (options.cell_size) {
     if (!map.frame) refuse_option("--cell-size", "maps that say how large their cells are", source);
@@ -40,11 +39,11 @@ void shape_grid(GridMap& map, const MapOptions& options, const std::string& sour
     scale = std::max(1.0, scale);
   }
   if (options.robot_radius > 0) map = with_obstacles_grown(std::move(map), options.robot_radius / side);
-  const std::int64_t cells_before = count_free(map);
+  const std::int64_t cells_before = map.free_count();
   if (scale > 1) map = coarsened(map, scale);
   map.diagonals = options.diagonals;
   map.cut_corners = options.cut_corners;
-  const double free_after = static_cast<double>(count_free(map)) * side * side * scale * scale;
+  const double free_after = static_cast<double>(map.free_count()) * side * side * scale * scale;
   if (free_after == 0) {
     throw Error({.what = "no cell is left free",
                  .expected = "a smaller robot or smaller cells",

@@ -1,30 +1,15 @@
 // Any graph as JSON in node-link form, as networkx's node_link_data and D3 write it.
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "graphdrl/graph/given_task.h"
-#include "graphdrl/graph/graph.h"
-#include "graphdrl/graph/multigraph.h"
-#include "graphdrl/graph/point.h"
+#include "graphdrl/graph/graph_map.h"
 #include "graphdrl/io/map_options.h"
 
 namespace graphdrl {
-
-// A graph with its obstacles, as a file holds it.
-struct GraphMap {
-  Graph graph;
-  std::vector<bool> blocked;        // [N]
-  std::vector<std::string> labels;  // [N], what the file calls its nodes; empty where that is 0 … N - 1
-  std::vector<double> prizes = {};  // [N], what a first visit is worth; empty where that is 1 everywhere
-  Places places = {};               // where they lie
-  GivenTask task = {};
-  std::shared_ptr<const Multigraph> multigraph = {};  // null where `graph` has all edges, and they have no labels
-};
 
 // An attribute of nodes that is not the map's own.
 struct NodeColumn {

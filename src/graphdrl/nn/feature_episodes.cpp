@@ -21,7 +21,7 @@ GridEpisodes::GridEpisodes(EpisodesOptions options)
     throw Error({.what = "bad budget", .expected = "1 or more, for a step"});
   }
   allocate(static_cast<std::size_t>(this->options().most_nodes()) * kPaperFeatureCount,
-           static_cast<int>(kAllDirections.size()));
+           kDirectionCount);
   std::ranges::fill(action_masks(), true);
   if (this->options().world) std::ranges::fill(encoders_, std::make_shared<const PaperFeatureEncoder>(example));
 }

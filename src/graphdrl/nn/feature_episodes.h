@@ -11,7 +11,7 @@
 
 namespace graphdrl {
 
-// The paper's, observed as its features of each cell. An action is a direction [kAllDirections], A = 4; none is masked
+// The paper's, observed as its features of each cell. An action is a direction [kDirectionNames], A = 4; none is masked
 // or has a target. F = 7 N, 0 where a world has fewer cells. An episode is truncated where its budget is spent.
 class GridEpisodes final : public Episodes {
  public:

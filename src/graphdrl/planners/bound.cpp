@@ -8,7 +8,7 @@
 #include <queue>
 #include <utility>
 
-#include "graphdrl/graph/blocks.h"
+#include "graphdrl/graph/components.h"
 #include "graphdrl/graph/search.h"
 
 namespace graphdrl {
@@ -16,7 +16,7 @@ namespace {
 
 // The tree of blocks, with what it costs to arrive in them.
 struct ArrivalTree {
-  ArrivalTree(const Task& task) : blocks(task.view().open(), task.view().into(), task.start(), task.reach().contains) {
+  ArrivalTree(const Task& task) : blocks(task.view().both_ways(), task.start(), task.reach().contains) {
     const Graph& into = task.view().into();
     std::vector<int> block_of(task.view().node_count(), -1);
     std::vector<bool> end_below(task.view().node_count());
@@ -229,7 +229,7 @@ double colour_bound(const Task& task, double steps) {
 // The best way through the strongly connected components of a directed graph.
 double order_bound(const Task& task) {
   const Graph& open = task.view().open();
-  const std::vector<int> component = strong_components(open, task.view().into(), task.start(), task.reach().contains);
+  const std::vector<int> component = strong_components(open, task.start(), task.reach().contains);
   const int count = 1 + *std::max_element(component.begin(), component.end());
   std::vector<std::vector<NodeId>> members(count);
   for (const NodeId node : task.reach().nodes) {

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "graphdrl/graph/blocks.h"
+#include "graphdrl/graph/components.h"
 
 namespace graphdrl {
 namespace {
@@ -64,7 +64,7 @@ WalkRelaxation::WalkRelaxation(const Task& task)
     at_[arcs_[arc].to].push_back(arc);
   }
   parent_.assign(nodes_.size(), -1);
-  const Blocks blocks(open, task.view().into(), task.start(), task.reach().contains);
+  const Blocks blocks(task.view().both_ways(), task.start(), task.reach().contains);
   for (int block = 0; block < blocks.count(); ++block) {
     if (blocks.root(block) == task.start()) continue;
     for (const NodeId member : blocks.members(block)) parent_[number[member]] = number[blocks.root(block)];

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"
 

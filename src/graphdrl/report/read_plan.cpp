@@ -8,8 +8,8 @@
 #include <span>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/io/csv.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"

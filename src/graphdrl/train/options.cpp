@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 

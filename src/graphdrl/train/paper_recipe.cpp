@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/paper_replay_buffer.h"

@@ -1,4 +1,4 @@
-#include "graphdrl/env/known.h"
+#include "graphdrl/env/view.h"
 
 #include <atomic>
 #include <cmath>
@@ -11,15 +11,19 @@ KnownGrid::KnownGrid(GridMap map) : map_(std::move(map)) {
   if (map_.diagonals) return;
   targets_.resize(map_.blocked.size());
   for (NodeId node = 0; node < std::ssize(targets_); ++node) {
-    for (const Direction direction : kAllDirections) {
-      const NodeId next = grid_neighbour(map_.rows, map_.cols, node, direction);
-      targets_[node][static_cast<int>(direction)] = next == kNoNode || map_.blocked[next] ? node : next;
+    for (int direction = 0; direction < kDirectionCount; ++direction) {
+      const Cell next = map_.cell(node) + kGridSteps[direction];
+      targets_[node][direction] = map_.is_free(next) ? map_.node(next) : node;
     }
   }
 }
 
 const Graph& KnownGrid::graph() const {
-  std::call_once(graph_made_, [&] { graph_ = Graph::grid(map_.without_obstacles()); });
+  std::call_once(graph_made_, [&] {
+    GridMap whole = map_;
+    whole.blocked.assign(whole.blocked.size(), false);
+    graph_ = Graph::grid(whole);
+  });
   return graph_;
 }
 
