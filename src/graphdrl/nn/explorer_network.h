@@ -59,7 +59,7 @@ class ExplorerNetwork {
 
  private:
   const ExplorerParameters* parameters_ = nullptr;
-  GatedGraphConv<float> conv_;
+  GatedGraphConv conv_;
   std::vector<float> embedded_;     // [N, D]
   std::vector<float> pooled_;       // [B, D], means
   std::vector<float> joined_;       // [C, head inputs]

@@ -166,7 +166,8 @@ void PaperNetwork::backward(const GraphBatch& batch, std::span<const float> keep
   linear_backward(kFc2Shape, graphs, hidden_.data(), fc2_, grad_q.data(), grad_hidden_.data(), grad.linear("fc2"));
   multiply(keep_scale, grad_hidden_);
   elu_backward(activated_.data(), grad_hidden_.data(), grad_hidden_.size());
-  linear_backward(kFc1Shape, graphs, pooled_.data(), fc1_, grad_hidden_.data(), grad_pooled_.data(), grad.linear("fc1"));
+  linear_backward(kFc1Shape, graphs, pooled_.data(), fc1_, grad_hidden_.data(), grad_pooled_.data(),
+                  grad.linear("fc1"));
   sum_pool_backward(batch, kFc1Shape.inputs, grad_pooled_.data(), layers_.back().grad.data());
   for (std::size_t i = layers_.size(); i-- > 0;) {
     Layer& layer = layers_[i];

@@ -81,7 +81,7 @@ class PaperNetwork {
   struct Layer {
     explicit Layer(const GatedGraphConvShape& shape) : conv(shape) {}
 
-    GatedGraphConv<float> conv;
+    GatedGraphConv conv;
     std::vector<float> output;      // [N, D]
     std::vector<float> grad;        // by it: [N, D]
     BatchNormTensors norm{};        // after it, but for the last

@@ -36,8 +36,8 @@ void add(std::vector<WorldSpec>& worlds, int copies, const WorldSpec& spec) {
   worlds.insert(worlds.end(), static_cast<std::size_t>(copies), spec);
 }
 
-// The worlds that the explorer is trained on, each as likely as any other. Grids up to `largest` cells a side, graphs up
-// to seven times as many nodes.
+// The worlds that the explorer is trained on, each as likely as any other. Grids up to `largest` cells a side, graphs
+// up to seven times as many nodes.
 std::vector<WorldSpec> training_worlds(int largest) {
   std::vector<WorldSpec> worlds;
   for (const int side : kSides) {

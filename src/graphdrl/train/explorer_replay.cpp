@@ -65,7 +65,8 @@ void ExplorerReplay::restore(const Checkpoint& checkpoint, const LessonOptions& 
   arrays.for_each([&]<typename T>(const char* name, std::vector<T>& values) { values = checkpoint.get<T>(name); });
   const std::size_t size = arrays.seed.size();
   const std::int64_t next = checkpoint.get<std::int64_t>(kNext, {1}).front();
-  require(size <= capacity_ && next >= 0 && next <= std::ssize(arrays.seed) && next < static_cast<std::int64_t>(capacity_));
+  require(size <= capacity_ && next >= 0 && next <= std::ssize(arrays.seed) &&
+          next < static_cast<std::int64_t>(capacity_));
   for (const std::size_t entries :
        {arrays.position.size(), arrays.scope.size(), arrays.spendable.size(), arrays.label_count.size()}) {
     require(entries == size);

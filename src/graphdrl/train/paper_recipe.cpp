@@ -299,7 +299,8 @@ std::vector<World> worlds_of(const Checkpoint& checkpoint) {
   require(json.is_array() && !json.empty());
   std::vector<World> worlds;
   for (const Json& item : json) {
-    for (const char* const key : {"name", "map"}) require(item.is_object() && item.contains(key) && item[key].is_string());
+    for (const char* const key : {"name", "map"})
+      require(item.is_object() && item.contains(key) && item[key].is_string());
     worlds.emplace_back(item["name"].get<std::string>(),
                         parse_ascii_map(item["map"].get<std::string>(), checkpoint.source()));
   }

@@ -10,8 +10,8 @@
 
 #include "graphdrl/env/world.h"
 #include "graphdrl/train/checkpoint.h"
-#include "graphdrl/train/paper_learner.h"
 #include "graphdrl/train/options.h"
+#include "graphdrl/train/paper_learner.h"
 
 namespace graphdrl {
 
