@@ -12,20 +12,6 @@ namespace {
 constexpr int kWidth = kExplorerConvShape.width;
 constexpr int kVisitsPerTask = 64;
 
-std::vector<TensorSpec> explorer_specs() {
-  TensorList list;
-  list.add_conv("conv", kExplorerConvShape);
-  list.add_linear("head1", kExplorerHead1);
-  list.add_linear("head2", kExplorerHead2);
-  return std::move(list).specs();
-}
-
-// A row of [count, width].
-template <typename T>
-T* row_of(T* values, int row, int width) {
-  return values + static_cast<std::ptrdiff_t>(row) * width;
-}
-
 void add_to(const float* from, int count, float* to) {
   for (int i = 0; i < count; ++i) to[i] += from[i];
 }
@@ -33,7 +19,13 @@ void add_to(const float* from, int count, float* to) {
 }  // namespace
 
 const std::vector<TensorSpec>& ExplorerParameters::specs() {
-  static const std::vector<TensorSpec> specs = explorer_specs();
+  static const std::vector<TensorSpec> specs = [] {
+    std::vector<TensorSpec> list;
+    add_conv(list, "conv", kExplorerConvShape);
+    add_linear(list, "head1", kExplorerHead1);
+    add_linear(list, "head2", kExplorerHead2);
+    return list;
+  }();
   return specs;
 }
 

@@ -23,23 +23,6 @@ std::string norm_name(std::size_t layer, const char* tensor) {
   return fmt::format("bn{}.{}", layer + 1, tensor);
 }
 
-std::vector<TensorSpec> paper_specs() {
-  TensorList list;
-  for (std::size_t i = 0; i < kConvShapes.size(); ++i) {
-    list.add_conv(conv_name(i), kConvShapes[i]);
-    if (i == kNorms) break;
-    for (const char* const tensor : {"weight", "bias"}) list.add(norm_name(i, tensor), {kConvShapes[i].width}, 0);
-  }
-  list.add_linear("fc1", kFc1Shape);
-  list.add_linear("fc2", kFc2Shape);
-  for (std::size_t i = 0; i < kNorms; ++i) {
-    for (const char* const tensor : {"running_mean", "running_var"}) {
-      list.add(norm_name(i, tensor), {kConvShapes[i].width}, 0, /*trainable=*/false);
-    }
-  }
-  return std::move(list).specs();
-}
-
 // Everything a reader needs to rebuild the network, and what a file is compared with before it is believed.
 nlohmann::json network_description() {
   nlohmann::json layers = nlohmann::json::array();
@@ -80,7 +63,22 @@ PaperParameters::PaperParameters(Rng& rng) : PaperParameters() {
 }
 
 const std::vector<TensorSpec>& PaperParameters::specs() {
-  static const std::vector<TensorSpec> specs = paper_specs();
+  static const std::vector<TensorSpec> specs = [] {
+    std::vector<TensorSpec> list;
+    for (std::size_t i = 0; i < kConvShapes.size(); ++i) {
+      add_conv(list, conv_name(i), kConvShapes[i]);
+      if (i == kNorms) break;
+      for (const char* const of : {"weight", "bias"}) add_tensor(list, norm_name(i, of), {kConvShapes[i].width}, 0);
+    }
+    add_linear(list, "fc1", kFc1Shape);
+    add_linear(list, "fc2", kFc2Shape);
+    for (std::size_t i = 0; i < kNorms; ++i) {
+      for (const char* const of : {"running_mean", "running_var"}) {
+        add_tensor(list, norm_name(i, of), {kConvShapes[i].width}, 0, /*trainable=*/false);
+      }
+    }
+    return list;
+  }();
   return specs;
 }
 

@@ -14,26 +14,26 @@ namespace {
 constexpr const char* kDescriptionKey = "network";
 }
 
-void TensorList::add(std::string name, Shape shape, float bound, bool trainable) {
+void add_tensor(std::vector<TensorSpec>& specs, std::string name, Shape shape, float bound, bool trainable) {
   std::size_t size = 1;
   for (const std::int64_t extent : shape) size *= static_cast<std::size_t>(extent);
-  const std::size_t offset = specs_.empty() ? 0 : specs_.back().offset + specs_.back().size;
-  specs_.push_back({std::move(name), std::move(shape), trainable, bound, offset, size});
+  const std::size_t offset = specs.empty() ? 0 : specs.back().offset + specs.back().size;
+  specs.push_back({std::move(name), std::move(shape), trainable, bound, offset, size});
 }
 
-void TensorList::add_conv(const std::string& name, const GatedGraphConvShape& shape) {
+void add_conv(std::vector<TensorSpec>& specs, const std::string& name, const GatedGraphConvShape& shape) {
   const float bound = 1.0f / std::sqrt(static_cast<float>(shape.width));
-  add(name + ".weight", {shape.steps, shape.width, shape.width}, bound);
-  add(name + ".rnn.weight_ih", {3 * shape.width, shape.width}, bound);
-  add(name + ".rnn.weight_hh", {3 * shape.width, shape.width}, bound);
-  add(name + ".rnn.bias_ih", {3 * shape.width}, bound);
-  add(name + ".rnn.bias_hh", {3 * shape.width}, bound);
+  add_tensor(specs, name + ".weight", {shape.steps, shape.width, shape.width}, bound);
+  add_tensor(specs, name + ".rnn.weight_ih", {3 * shape.width, shape.width}, bound);
+  add_tensor(specs, name + ".rnn.weight_hh", {3 * shape.width, shape.width}, bound);
+  add_tensor(specs, name + ".rnn.bias_ih", {3 * shape.width}, bound);
+  add_tensor(specs, name + ".rnn.bias_hh", {3 * shape.width}, bound);
 }
 
-void TensorList::add_linear(const std::string& name, const LinearShape& shape) {
+void add_linear(std::vector<TensorSpec>& specs, const std::string& name, const LinearShape& shape) {
   const float bound = 1.0f / std::sqrt(static_cast<float>(shape.inputs));
-  add(name + ".weight", {shape.outputs, shape.inputs}, bound);
-  add(name + ".bias", {shape.outputs}, bound);
+  add_tensor(specs, name + ".weight", {shape.outputs, shape.inputs}, bound);
+  add_tensor(specs, name + ".bias", {shape.outputs}, bound);
 }
 
 ParameterBuffer::ParameterBuffer(const std::vector<TensorSpec>& specs)
@@ -70,16 +70,8 @@ void ParameterBuffer::draw(Rng& rng) {
   }
 }
 
-const TensorSpec& ParameterBuffer::find(const std::string& name) const {
-  return *std::find_if(specs_->begin(), specs_->end(), [&](const TensorSpec& spec) { return spec.name == name; });
-}
-
-float* ParameterBuffer::tensor(const std::string& name) {
-  return values_.data() + find(name).offset;
-}
-
-const float* ParameterBuffer::tensor(const std::string& name) const {
-  return values_.data() + find(name).offset;
+std::size_t ParameterBuffer::offset_of(const std::string& name) const {
+  return std::ranges::find(*specs_, name, &TensorSpec::name)->offset;
 }
 
 GatedGraphConvTensors<float> ParameterBuffer::conv(const std::string& name) {

@@ -24,20 +24,12 @@ struct TensorSpec {
   std::size_t size;
 };
 
-// Lists a network's tensors in the order of the buffer; the trainable ones must come first.
-class TensorList {
- public:
-  void add(std::string name, Shape shape, float bound, bool trainable = true);
-  // NAME.weight [L, D, D], NAME.rnn.*; within ±1/√D at the start, as in PyTorch Geometric.
-  void add_conv(const std::string& name, const GatedGraphConvShape& shape);
-  // NAME.weight [outputs, inputs], NAME.bias; within ±1/√inputs at the start, as in PyTorch.
-  void add_linear(const std::string& name, const LinearShape& shape);
-
-  std::vector<TensorSpec> specs() && { return std::move(specs_); }
-
- private:
-  std::vector<TensorSpec> specs_;
-};
+// List a network's tensors in the order of the buffer; the trainable ones must come first.
+void add_tensor(std::vector<TensorSpec>& specs, std::string name, Shape shape, float bound, bool trainable = true);
+// NAME.weight [L, D, D], NAME.rnn.*; within ±1/√D at the start, as in PyTorch Geometric.
+void add_conv(std::vector<TensorSpec>& specs, const std::string& name, const GatedGraphConvShape& shape);
+// NAME.weight [outputs, inputs], NAME.bias; within ±1/√inputs at the start, as in PyTorch.
+void add_linear(std::vector<TensorSpec>& specs, const std::string& name, const LinearShape& shape);
 
 // The values. The specs must outlive it.
 class ParameterBuffer {
@@ -58,8 +50,8 @@ class ParameterBuffer {
   std::span<float> values() { return values_; }
   std::span<const float> values() const { return values_; }
   // REQUIRES, of all that take a name: there is such a tensor, or such a layer.
-  float* tensor(const std::string& name);
-  const float* tensor(const std::string& name) const;
+  float* tensor(const std::string& name) { return values_.data() + offset_of(name); }
+  const float* tensor(const std::string& name) const { return values_.data() + offset_of(name); }
   GatedGraphConvTensors<float> conv(const std::string& name);
   GatedGraphConvTensors<const float> conv(const std::string& name) const;
   LinearTensors<float> linear(const std::string& name);
@@ -69,7 +61,7 @@ class ParameterBuffer {
   std::vector<TensorView> views(const std::string& prefix = "") const;
 
  private:
-  const TensorSpec& find(const std::string& name) const;
+  std::size_t offset_of(const std::string& name) const;
 
   const std::vector<TensorSpec>* specs_;
   std::vector<float> values_;
