@@ -34,9 +34,7 @@ std::vector<std::int64_t> FirstVisitEpisodes::target_rows(int index) const {
 }
 
 void FirstVisitEpisodes::show_start(int index, const Episode& episode) {
-  Memory& memory = memories_[index];
-  const Observation now = episode.observation();
-  memory.visited = now.ground();
+  memories_[index].visited = episode.observation().ground();
   show(index, episode);
 }
 
@@ -44,7 +42,11 @@ Episodes::Outcome FirstVisitEpisodes::take(int index, Episode& episode, int acti
   Memory& memory = memories_[index];
   Outcome outcome;
   if (mask_of(index)[action]) {
-    for (const NodeId node : way_to(memory, episode, memory.visits[action].node)) {
+    const NodeId target = memory.visits[action].node;
+    find_way(episode.view().open(), episode.position(), target, memory.visited, memory.search);
+    std::vector<NodeId> way;  // without the current node
+    memory.search.append_path_to(target, way);
+    for (const NodeId node : way) {
       outcome.reward += episode.step(episode.observation().action_to(node)).reward;
     }
     memory.visited.insert(episode.position());
@@ -54,14 +56,6 @@ Episodes::Outcome FirstVisitEpisodes::take(int index, Episode& episode, int acti
   show(index, episode);
   outcome.terminated = outcome.terminated || memory.visits.empty();
   return outcome;
-}
-
-// Without the current node.
-std::vector<NodeId> FirstVisitEpisodes::way_to(Memory& memory, const Episode& episode, NodeId target) {
-  find_way(episode.view().open(), episode.position(), target, memory.visited, memory.search);
-  std::vector<NodeId> walk;
-  memory.search.append_path_to(target, walk);
-  return walk;
 }
 
 void FirstVisitEpisodes::show(int index, const Episode& episode) {

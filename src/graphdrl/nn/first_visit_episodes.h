@@ -39,7 +39,6 @@ class FirstVisitEpisodes final : public Episodes {
   void show_start(int index, const Episode& episode) override;
   Outcome take(int index, Episode& episode, int action) override;
   void show(int index, const Episode& episode);
-  static std::vector<NodeId> way_to(Memory& memory, const Episode& episode, NodeId target);
 
   int most_visits_;
   std::vector<Memory> memories_;  // [V]
