@@ -1,5 +1,5 @@
 // One learning step of DQN: targets, loss, Adam, soft update [paper, section 2 and Algorithm 1, lines 9 to 11], as the
-// recipe sees it. PaperKernelLearner does it with the kernels of nn/ on the CPU, PaperStack (train/torch/) with
+// recipe sees it. PaperKernelLearner does it with the kernels of nn/ on the CPU, a stack (train/torch/) with
 // LibTorch's operators on any device that it has, for many trainings at once.
 #pragma once
 
