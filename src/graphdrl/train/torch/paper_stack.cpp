@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "graphdrl/train/torch/device_stream.h"
-#include "graphdrl/train/torch/known_graphs.h"
 #include "graphdrl/train/torch/paper_stacked_network.h"
 
 namespace graphdrl {
