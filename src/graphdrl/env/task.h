@@ -86,6 +86,8 @@ class Task {
   bool is_claimed(NodeId node) const { return !claimed_.empty() && claimed_.contains(node); }
   // What the first visit of a node is worth, the start among them.
   double prize(NodeId node) const { return is_claimed(node) ? 0 : view_.prize(node); }
+  // Whether nodes may be claimed that are no ground.
+  bool claims_beyond_ground() const { return claims_beyond_ground_; }
   // Whether first visits may be worth other than 1.
   bool has_prizes() const { return view_.has_prizes() || claims_beyond_ground_; }
 
