@@ -145,14 +145,17 @@ void elu_backward(const float* y, float* grad, std::size_t count) {
 }
 
 GRAPHDRL_VECTOR_CLONES
-void adam_update(const AdamStep& step, const float* grad, float* first, float* second, float* value,
+void adam_update(float rate, float second_scale, const float* grad, float* first, float* second, float* value,
                  std::size_t count) {
+  constexpr auto kBeta1 = static_cast<float>(kAdamBeta1);
+  constexpr auto kBeta2 = static_cast<float>(kAdamBeta2);
+  constexpr auto kEpsilon = static_cast<float>(kAdamEpsilon);
 #pragma omp simd
   for (std::size_t i = 0; i < count; ++i) {
-    const float g = clamp(grad[i], step.clamp);
-    first[i] = step.beta1 * first[i] + (1.0f - step.beta1) * g;
-    second[i] = step.beta2 * second[i] + (1.0f - step.beta2) * g * g;
-    value[i] -= step.rate * first[i] / (__builtin_sqrtf(second[i]) * step.second_scale + step.epsilon);
+    const float g = clamp(grad[i], static_cast<float>(kGradientClamp));
+    first[i] = kBeta1 * first[i] + (1.0f - kBeta1) * g;
+    second[i] = kBeta2 * second[i] + (1.0f - kBeta2) * g * g;
+    value[i] -= rate * first[i] / (__builtin_sqrtf(second[i]) * second_scale + kEpsilon);
   }
 }
 

@@ -10,14 +10,6 @@
 
 namespace graphdrl {
 
-struct AdamOptions {
-  double learning_rate = 1e-3;
-  double beta1 = 0.9;
-  double beta2 = 0.999;
-  double epsilon = 1e-8;
-  double clamp = 1.0;  // gradients are cut to [-clamp, clamp], element by element, as in the author's code
-};
-
 // What Adam remembers, under PyTorch's names.
 struct AdamState {
   AdamState() = default;
@@ -31,19 +23,16 @@ struct AdamState {
 // The optimiser of a flat buffer of `count` parameters.
 class Adam {
  public:
-  Adam(std::size_t count, const AdamOptions& options) : options_(options), state_(count) {}
+  explicit Adam(std::size_t count) : state_(count) {}
 
   // One step. REQUIRES: both as long as the moments.
-  void step(std::span<const float> grad, std::span<float> values);
-
-  void set_learning_rate(double rate) { options_.learning_rate = rate; }
+  void step(std::span<const float> grad, double learning_rate, std::span<float> values);
 
   const AdamState& state() const { return state_; }
   // REQUIRES: as many moments as before.
   void set_state(AdamState state) { state_ = std::move(state); }
 
  private:
-  AdamOptions options_;
   AdamState state_;
 };
 

@@ -25,10 +25,7 @@ std::vector<float> td_targets(const PaperMinibatch& batch, std::span<const float
 }
 
 PaperKernelLearner::PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng)
-    : options_(options),
-      online_(rng),
-      target_(online_),
-      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {
+    : options_(options), online_(rng), target_(online_), adam_(PaperParameters::trainable_count()) {
   update();
 }
 
@@ -68,7 +65,7 @@ void PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
   losses_.push_back(
       compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng)));
   const std::size_t trainable = PaperParameters::trainable_count();
-  adam_.step(grad_.values().first(trainable), online_.values().first(trainable));
+  adam_.step(grad_.values().first(trainable), options_.learning_rate, online_.values().first(trainable));
   soft_update(online_.values(), options_.soft_update, target_.values());
   update();
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "graphdrl/nn/vector_math.h"
 #include "graphdrl/train/torch/device_stream.h"
 #include "graphdrl/train/torch/paper_stacked_network.h"
 
@@ -45,7 +46,6 @@ class PaperStack {
     const std::lock_guard lock(mutex_);
     if (graphs_) return;
     options_ = options;
-    adam_ = {.learning_rate = options.learning_rate};
     at::globalContext().setAllowTF32CuBLAS(options.tf32);
     const auto all = static_cast<std::int64_t>(PaperParameters().values().size());
     const auto trainable = static_cast<std::int64_t>(PaperParameters::trainable_count());
@@ -327,14 +327,14 @@ class PaperStack {
     const torch::NoGradGuard no_grad;
     const torch::Tensor mask = active.view({-1, 1});
     steps_ += mask;
-    const torch::Tensor clamped = gradient.clamp(-adam_.clamp, adam_.clamp);
-    first_.lerp_(clamped, ((1 - adam_.beta1) * mask).expand_as(first_));
-    second_.lerp_(clamped.square(), ((1 - adam_.beta2) * mask).expand_as(second_));
+    const torch::Tensor clamped = gradient.clamp(-kGradientClamp, kGradientClamp);
+    first_.lerp_(clamped, ((1 - kAdamBeta1) * mask).expand_as(first_));
+    second_.lerp_(clamped.square(), ((1 - kAdamBeta2) * mask).expand_as(second_));
     const torch::Tensor t = steps_.clamp_min(1);
-    const torch::Tensor root = (1 - torch::pow(adam_.beta2, t)).sqrt().to(torch::kFloat32);
-    const torch::Tensor rate = (adam_.learning_rate / (1 - torch::pow(adam_.beta1, t))).to(torch::kFloat32);
+    const torch::Tensor root = (1 - torch::pow(kAdamBeta2, t)).sqrt().to(torch::kFloat32);
+    const torch::Tensor rate = (options_.learning_rate / (1 - torch::pow(kAdamBeta1, t))).to(torch::kFloat32);
     torch::Tensor trainable = values_.narrow(1, 0, first_.size(1));
-    trainable.sub_(mask * rate * first_ / (second_.sqrt() / root + adam_.epsilon));
+    trainable.sub_(mask * rate * first_ / (second_.sqrt() / root + kAdamEpsilon));
     target_values_.lerp_(values_, (options_.soft_update * mask).expand_as(values_));  // [paper, eq. 6]
   }
 
@@ -348,7 +348,6 @@ class PaperStack {
 
   DeviceStream stream_;
   PaperLearnerOptions options_;
-  AdamOptions adam_;
   torch::Tensor values_;         // [S, all]
   torch::Tensor target_values_;  // [S, all]
   torch::Tensor first_;          // [S, trainable], as the next
