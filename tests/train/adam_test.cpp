@@ -26,7 +26,7 @@ TEST(Adam, IsItsFormulaWithClampedGradients) {
   std::vector<double> expected(values.begin(), values.end());
   std::vector<double> first(kCount);
   std::vector<double> second(kCount);
-  Adam adam(kCount);
+  AdamState adam(kCount);
   for (int t = 1; t <= 20; ++t) {
     const std::vector<float> grad = random_values(rng);
     set_threads(1 + t % 3);
@@ -41,7 +41,7 @@ TEST(Adam, IsItsFormulaWithClampedGradients) {
     }
   }
   set_threads(1);
-  EXPECT_EQ(adam.state().steps, 20);
+  EXPECT_EQ(adam.steps, 20);
   for (std::size_t i = 0; i < kCount; ++i) ASSERT_NEAR(values[i], expected[i], 1e-5) << i;
 }
 

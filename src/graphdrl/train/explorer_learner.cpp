@@ -99,7 +99,7 @@ ExplorerLearner::ExplorerLearner(double ranking, Rng& rng)
 
 void ExplorerLearner::set_state(const ExplorerParameters& parameters, AdamState adam) {
   parameters_ = parameters;
-  adam_.set_state(std::move(adam));
+  adam_ = std::move(adam);
   network_.set_parameters(parameters_);
 }
 

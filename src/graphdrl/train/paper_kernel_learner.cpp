@@ -73,7 +73,7 @@ void PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
 void PaperKernelLearner::set_state(const PaperState& state) {
   std::ranges::copy(state.online.values(), online_.values().begin());
   std::ranges::copy(state.target.values(), target_.values().begin());
-  adam_.set_state(state.adam);
+  adam_ = state.adam;
   update();
 }
 

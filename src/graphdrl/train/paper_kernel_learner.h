@@ -29,7 +29,7 @@ class PaperKernelLearner final : public PaperLearner {
   void q_values(const GraphBatch& batch, std::span<const float> x, std::span<float> q) override {
     network_.q_values(batch, x, q);
   }
-  PaperState state() const override { return {.online = online_, .target = target_, .adam = adam_.state()}; }
+  PaperState state() const override { return {.online = online_, .target = target_, .adam = adam_}; }
   void set_state(const PaperState& state) override;
 
   // The loss [paper, eq. 5]; its gradients stay in gradients(), not clamped yet. Moves the running statistics.
@@ -49,7 +49,7 @@ class PaperKernelLearner final : public PaperLearner {
   PaperParameters grad_;
   PaperNetwork network_;
   PaperNetwork target_network_;
-  Adam adam_;
+  AdamState adam_;
   std::vector<double> losses_;      // not taken yet
   std::vector<float> next_q_;       // [B, A]
   std::vector<float> next_online_;  // [B, A]
