@@ -28,8 +28,8 @@ void AdamState::step(std::span<const float> grad, double learning_rate, std::spa
   const auto rate = static_cast<float>(learning_rate / (1 - std::pow(kAdamBeta1, t)));
   const auto second_scale = static_cast<float>(1 / std::sqrt(1 - std::pow(kAdamBeta2, t)));
   for_each_block(values.size(), [&](std::size_t begin, std::size_t size) {
-    adam_update(rate, second_scale, grad.data() + begin, exp_avg.data() + begin,
-                exp_avg_sq.data() + begin, values.data() + begin, size);
+    adam_update(rate, second_scale, grad.data() + begin, exp_avg.data() + begin, exp_avg_sq.data() + begin,
+                values.data() + begin, size);
   });
 }
 

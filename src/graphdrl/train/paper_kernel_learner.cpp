@@ -24,14 +24,9 @@ std::vector<float> td_targets(const PaperMinibatch& batch, std::span<const float
   return targets;
 }
 
-PaperKernelLearner::PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng)
-    : options_(options), online_(rng), target_(online_), adam_(PaperParameters::trainable_count()) {
-  update();
-}
-
 void PaperKernelLearner::update() {
-  network_.set_parameters(online_);
-  target_network_.set_parameters(target_);
+  network_.set_parameters(state_.online);
+  target_network_.set_parameters(state_.target);
 }
 
 double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::span<const float> keep_scale) {
@@ -47,7 +42,7 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
 
   q_.resize(next_q_.size());
   network_.q_values(batch.graphs, batch.x, q_, keep_scale);
-  network_.move_statistics(batch.graphs.node_count(), online_);
+  network_.move_statistics(batch.graphs.node_count(), state_.online);
   double loss = 0;  // L(θ) [paper, eq. 5], a mean of squares
   for (int g = 0; g < graphs; ++g) {
     float* const row = q_.data() + static_cast<std::ptrdiff_t>(g) * kActionCount;
@@ -65,15 +60,8 @@ void PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
   losses_.push_back(
       compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng)));
   const std::size_t trainable = PaperParameters::trainable_count();
-  adam_.step(grad_.values().first(trainable), options_.learning_rate, online_.values().first(trainable));
-  soft_update(online_.values(), options_.soft_update, target_.values());
-  update();
-}
-
-void PaperKernelLearner::set_state(const PaperState& state) {
-  std::ranges::copy(state.online.values(), online_.values().begin());
-  std::ranges::copy(state.target.values(), target_.values().begin());
-  adam_ = state.adam;
+  state_.adam.step(grad_.values().first(trainable), options_.learning_rate, state_.online.values().first(trainable));
+  soft_update(state_.online.values(), options_.soft_update, state_.target.values());
   update();
 }
 

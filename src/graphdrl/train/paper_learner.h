@@ -29,6 +29,12 @@ struct PaperState {
   PaperParameters online;
   PaperParameters target;
   AdamState adam;
+
+  // At the beginning: the online network initialised from rng, the target its copy.
+  static PaperState begin(Rng& rng) {
+    const PaperParameters online(rng);
+    return {.online = online, .target = online, .adam = AdamState(PaperParameters::trainable_count())};
+  }
 };
 
 class PaperLearner {

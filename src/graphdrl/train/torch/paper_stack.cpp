@@ -371,11 +371,8 @@ class StackedLearner final : public PaperLearner {
  public:
   StackedLearner(std::shared_ptr<PaperStack> stack, int training, const PaperLearnerOptions& options, Rng& rng)
       : stack_(std::move(stack)), training_(training), dropout_(options.dropout) {
-    PaperState state{
-        .online = PaperParameters(rng), .target = {}, .adam = AdamState(PaperParameters::trainable_count())};
-    state.target = state.online;
     stack_->begin(options);
-    stack_->set_state_of(training_, state);
+    stack_->set_state_of(training_, PaperState::begin(rng));
   }
 
   void learn(const PaperMinibatch& batch, Rng& rng) override {
