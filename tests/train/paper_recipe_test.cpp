@@ -1,5 +1,3 @@
-#include "graphdrl/train/paper_recipe.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/eval/statistics.h"
 #include "graphdrl/graph/search.h"
-#include "graphdrl/nn/grid_episodes.h"
+#include "graphdrl/nn/feature_episodes.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"

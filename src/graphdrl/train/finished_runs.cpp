@@ -7,7 +7,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
-#include "graphdrl/train/paper_recipe.h"
+#include "graphdrl/train/recipe.h"
 #include "graphdrl/train/seed_runs.h"
 
 namespace graphdrl {

@@ -1,5 +1,3 @@
-#include "graphdrl/train/paper_recipe.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "graphdrl/io/ascii_map.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/paper_replay_buffer.h"
+#include "graphdrl/train/recipe.h"
 
 namespace graphdrl {
 namespace {

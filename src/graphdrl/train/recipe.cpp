@@ -1,7 +1,6 @@
 #include "graphdrl/train/recipe.h"
 
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/train/paper_recipe.h"
 
 namespace graphdrl {
 

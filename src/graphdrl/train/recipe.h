@@ -49,14 +49,28 @@ class Recipe {
   virtual void write_policy(const std::filesystem::path& path) const = 0;
 };
 
-// That of the preset explorer: a unit is a round of random walks, whose states search values, and of learning steps on
-// what is remembered. `rng` must outlive it.
-std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng);
-
 // The recipe of options.preset, at its beginning; `rng` must outlive it. `from`: the checkpoint to be restored, if any,
 // which holds the maps. worlds: instead of options.maps, where there are any. Throws Error on maps that do not fit the
 // options.
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
                                     const LearnerSource& learners, std::vector<World> worlds = {});
+
+// That of the preset explorer (explorer_recipe.cpp). A unit is a round of random walks, whose states search values, and
+// of learning steps on what is remembered.
+std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng);
+
+// That of the preset paper (paper_recipe.cpp): Deep Q-learning over episodes on grid maps [paper, Algorithm 1]. A unit
+// is an episode; `stop` is asked before every step. Metrics are means over ten episodes, or fewer at the end; epsilon
+// is the last one's.
+std::unique_ptr<Recipe> make_paper_recipe(const TrainOptions& options, Rng& rng, std::vector<World> worlds,
+                                          const LearnerSource& learners);
+
+// How much its policy explores: exp(-x), x evenly spaced from 0.1 in the first episode to 3 in the last, as the paper's
+// author's code has it; one single episode has 0.1. REQUIRES: 0 <= episode < episodes.
+double paper_epsilon(std::int64_t episode, std::int64_t episodes);
+
+// The maps that its checkpoint holds: a run goes on from anywhere, whatever became of the map files. Throws Error where
+// it holds none.
+std::vector<World> worlds_of(const Checkpoint& checkpoint);
 
 }  // namespace graphdrl
