@@ -44,13 +44,6 @@ void multiply(std::span<const float> scale, std::vector<float>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] *= scale[i];
 }
 
-PaperWall described_wall(const Safetensors& file) {
-  const nlohmann::json description = policy_description(file);
-  const auto wall = description.find(kWallKey);
-  if (wall == description.end()) return PaperWall::kBorder;
-  return parse_paper_wall(wall->is_string() ? wall->get<std::string>() : wall->dump(), file.source());
-}
-
 }  // namespace
 
 PaperParameters::PaperParameters(Rng& rng) : PaperParameters() {
@@ -96,7 +89,10 @@ PaperParameters read_policy_file(const std::filesystem::path& path) {
   const Safetensors file = Safetensors::read(path);
   require_description(file, network_description(), PaperParameters::specs());
   PaperParameters parameters(file);
-  parameters.set_wall(described_wall(file));
+  const nlohmann::json description = policy_description(file);
+  if (const auto wall = description.find(kWallKey); wall != description.end()) {
+    parameters.set_wall(parse_paper_wall(wall->is_string() ? wall->get<std::string>() : wall->dump(), file.source()));
+  }
   return parameters;
 }
 
