@@ -111,6 +111,7 @@ void sum_neighbours(const Graph& graph, int columns, int width, const float* in,
   // Columns whose sum stays in registers over all neighbours.
   typedef float Block __attribute__((vector_size(64), aligned(alignof(float)), may_alias));
   constexpr int kBlock = 64 / sizeof(float);
+  // Not a deduced type, which would lose the alignment.
   const auto block_of = [](const float* values) -> Block* {
     return reinterpret_cast<Block*>(const_cast<float*>(values));
   };
