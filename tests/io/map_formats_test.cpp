@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "graphdrl/io/cell_table.h"
-#include "graphdrl/io/chao.h"
-#include "graphdrl/io/moving_ai.h"
+#include "graphdrl/io/readers.h"
 #include "support.h"
 
 namespace graphdrl {

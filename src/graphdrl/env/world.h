@@ -11,7 +11,7 @@
 #include "graphdrl/graph/given_task.h"
 #include "graphdrl/graph/graph.h"
 #include "graphdrl/graph/grid_map.h"
-#include "graphdrl/io/node_link.h"
+#include "graphdrl/io/any_map.h"
 
 namespace graphdrl {
 

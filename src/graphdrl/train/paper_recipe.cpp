@@ -9,7 +9,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/io/ascii_map.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/paper_epsilon.h"
 

@@ -1,19 +1,41 @@
-// What users say of a map beside its file.
+// A map as its file holds it, and what users say beside the file.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
+
+#include "graphdrl/graph/given_task.h"
+#include "graphdrl/graph/graph.h"
+#include "graphdrl/graph/grid_map.h"
+#include "graphdrl/graph/multigraph.h"
+#include "graphdrl/graph/point.h"
 
 namespace graphdrl {
+
+// A graph with its obstacles.
+struct GraphMap {
+  Graph graph;
+  std::vector<bool> blocked;             // [N]
+  std::vector<std::string> labels = {};  // [N], what the file calls its nodes; empty where that is 0 … N - 1
+  std::vector<double> prizes = {};       // [N], what a first visit is worth; empty where that is 1 everywhere
+  Places places = {};                    // where they lie
+  GivenTask task = {};
+  std::shared_ptr<const Multigraph> multigraph = {};  // null where `graph` has all edges, and they have no labels
+};
+
+using AnyMap = std::variant<GridMap, GraphMap>;
 
 // As an attribute's name: every edge costs 1, every first visit is worth 1.
 inline constexpr std::string_view kNoAttribute = "none";
 
 struct MapOptions {
-  std::string cost_attribute = {};   // the edges' attribute that is their cost; empty: the first of cost_names()
-  std::string prize_attribute = {};  // the nodes' attribute that is their prize; empty: the first of prize_names()
+  std::string cost_attribute = {};   // the edges' attribute that is their cost; empty: the first of kCostNames
+  std::string prize_attribute = {};  // the nodes' attribute that is their prize; empty: the first of kPrizeNames
   bool directed = false;             // of formats that do not say: edges lead one way
 
   // Of grids.
