@@ -240,6 +240,7 @@ class DotReader {
   // One of the same name takes the place of the one before.
   void set_defaults(Attributes& own) {
     for (Attribute& attribute : read_attributes()) {
+      builder_.spend(std::ssize(own));
       std::erase_if(own, [&](const Attribute& before) { return before.name == attribute.name; });
       own.push_back(std::move(attribute));
     }
@@ -354,8 +355,9 @@ class DotReader {
     }
     if (start == kNoNode) return;
     builder_.set_start(start);
-    if (count == 1) return;
-    builder_.note(fmt::format("{} starts, of which {} is taken", count, in_quotes(builder_.id(start))));
+    const std::string first = in_quotes(builder_.id(start));
+    builder_.note(count == 1 ? fmt::format("`__start` points at {}, the start, and is left out", first)
+                             : fmt::format("{} starts, of which {} is taken", count, first));
   }
 
   // Of a node that may stand for the start.

@@ -28,14 +28,14 @@ constexpr Foreign kForeign[] = {
     {"<", "XML of another kind", "GraphML"},
 };
 
-// "version 1", then nine fields a line: bucket, map, its size, start, goal, length.
+// "version 1", then nine fields a line: bucket, map, its size, start, goal, length. The map is no number.
 bool is_scenario(std::string_view text) {
   Lines lines(text);
   if (!lines.next()) return false;
   if (trimmed(lines.line()).starts_with("version") && !lines.next()) return false;
   const auto fields = split_fields(lines.line(), separator_of(lines.line()));
   const auto is_number = [](const std::string& field) { return parse_number(field).has_value(); };
-  return fields.size() == 9 && std::all_of(fields.begin() + 2, fields.end(), is_number);
+  return fields.size() == 9 && !is_number(fields[1]) && std::all_of(fields.begin() + 2, fields.end(), is_number);
 }
 
 const Foreign* foreign_of(std::string_view text) {

@@ -18,6 +18,7 @@ constexpr std::string_view kBlockedName = "blocked";
 constexpr std::string_view kEdgeLabelName = "label";
 
 constexpr std::int64_t kMostItemsPerByte = 50;  // { a b } -> { c d } stands for four edges
+constexpr std::int64_t kFreeAttributes = 4;     // of a node or an edge: these are limited themselves
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
@@ -58,7 +59,7 @@ GraphBuilder::GraphBuilder(const MapOptions& options, std::function<std::string(
 void GraphBuilder::spend(std::int64_t items) {
   items_left_ -= items;
   if (items_left_ >= 0) return;
-  throw Error({.what = "far more edges than a file of this size holds", .where = place_()});
+  throw Error({.what = "far more edges or attributes than a file of this size holds", .where = place_()});
 }
 
 NodeId GraphBuilder::add_node(std::string_view id) {
@@ -110,6 +111,7 @@ bool GraphBuilder::uses_of_node(std::string_view name) const {
 }
 
 void GraphBuilder::set_node(NodeId node, std::span<const Attribute> attributes) {
+  spend(std::max<std::int64_t>(0, std::ssize(attributes) - kFreeAttributes));
   if (const Attribute* const prize = prizes_.best(attributes)) {
     at(prize_, node, 1.0) = number(*prize, /*may_be_negative=*/false);
   }
@@ -137,6 +139,7 @@ void GraphBuilder::set_node(NodeId node, std::string_view name, std::string_view
 }
 
 void GraphBuilder::set_edge(std::span<const Attribute> attributes) {
+  spend(std::max<std::int64_t>(0, std::ssize(attributes) - kFreeAttributes));
   const Attribute* const cost = costs_.best(attributes);
   if (cost != nullptr) last_->edges.back().cost = number(*cost, /*may_be_negative=*/false);
   for (const Attribute& attribute : attributes) {

@@ -33,6 +33,10 @@ class GraphWalkerReader {
       builder_.set_start(entered != targets_.end() ? entered->second : builder_.node(first));
     } else if (entries_.size() == 1) {
       builder_.set_start(entries_.front());
+      builder_.note("the model names no start, so its only edge from nowhere does");
+    } else if (entries_.size() > 1) {
+      builder_.note(
+          fmt::format("the model names no start, and none of its {} edges from nowhere is taken", entries_.size()));
     }
     builder_.direct_all();
     return builder_.build();

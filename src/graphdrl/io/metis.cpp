@@ -92,7 +92,10 @@ GraphMap parse_metis(std::string_view text, const std::string& source, const Map
          .expected = "each edge in the lines of both nodes, at one cost",
          .where = source});
   }
-  if (read->weights_skipped && options.note) options.note(source + ": weights and sizes of METIS's nodes are skipped");
+  if (options.note) {
+    options.note(fmt::format("{}: taken for a graph of METIS: {} nodes and the neighbours of each{}", source,
+                             read->nodes, read->weights_skipped ? "; weights and sizes of nodes are skipped" : ""));
+  }
   return {.graph = Graph::from_edges(read->nodes, read->arcs),
           .blocked = std::vector<bool>(read->nodes),
           .labels = labels_from_one(read->nodes)};

@@ -8,7 +8,7 @@
 
 namespace graphdrl {
 
-// Whether a line "#" ends a list of different nodes.
+// Whether a line "#" ends a list of different nodes, which are no cells of a drawing.
 bool is_tgf(std::string_view text) {
   if (text.find("\n#") == std::string_view::npos) return false;
   std::unordered_set<std::string_view> nodes;
@@ -16,7 +16,8 @@ bool is_tgf(std::string_view text) {
     std::string_view line = lines.line();
     const std::string_view id = take_word(line);
     if (id == "#" && line.empty()) return !nodes.empty();
-    if (id.starts_with('#') || (!id.empty() && !nodes.insert(id).second)) return false;
+    const bool cell = id == "." && line.empty();
+    if (cell || id.starts_with('#') || (!id.empty() && !nodes.insert(id).second)) return false;
   }
   return false;
 }
