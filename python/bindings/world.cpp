@@ -175,10 +175,10 @@ void bind_worlds(nb::module_& module) {
   const auto texts = [](std::span<const std::string_view> all) {
     return nb::cast(std::vector(all.begin(), all.end()));
   };
-  module.attr("COST_NAMES") = texts(cost_names());
-  module.attr("PRIZE_NAMES") = texts(prize_names());
+  module.attr("COST_NAMES") = texts(kCostNames);
+  module.attr("PRIZE_NAMES") = texts(kPrizeNames);
   nb::list places;
-  for (const PlaceNames& one : place_names()) places.append(nb::make_tuple(one.x, one.y, one.unit));
+  for (const PlaceNames& one : kPlaceNames) places.append(nb::make_tuple(one.x, one.y, one.unit));
   module.attr("PLACE_NAMES") = places;
 }
 

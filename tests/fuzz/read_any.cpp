@@ -13,7 +13,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/map_formats.h"
-#include "graphdrl/io/map_text.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/safetensors.h"
 #include "graphdrl/report/plan_files.h"
 

@@ -16,10 +16,9 @@
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/graph/components.h"
 #include "graphdrl/graph/search.h"
-#include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/map_source.h"
-#include "graphdrl/io/node_link.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/report/map_drawing.h"
 #include "graphdrl/report/picture.h"
 #include "graphdrl/report/terminal_picture.h"
@@ -246,7 +245,7 @@ const std::map<std::string, Split> kSplits = {
 // The file of a world: a grid as text, a graph as node-link JSON.
 std::string format_world(const World& world) {
   if (world.is_grid()) return format_ascii_map(*world.map());
-  return format_node_link(world.graph(), world.blocked());
+  return format_node_link({.graph = world.graph(), .blocked = world.blocked()});
 }
 
 void generate_maps(const GenerateOptions& options) {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "graphdrl/io/map_options.h"
+#include "graphdrl/io/any_map.h"
 
 namespace graphdrl {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "graphdrl/env/task.h"
-#include "graphdrl/io/map_options.h"
+#include "graphdrl/io/any_map.h"
 
 namespace graphdrl {
 

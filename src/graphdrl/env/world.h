@@ -7,6 +7,7 @@
 
 #include "graphdrl/env/view.h"
 #include "graphdrl/graph/graph_map.h"
+#include "graphdrl/graph/grid_map.h"
 
 namespace graphdrl {
 

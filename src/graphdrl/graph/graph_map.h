@@ -36,10 +36,10 @@ struct Multigraph {
 // A graph with its obstacles.
 struct GraphMap {
   Graph graph;
-  std::vector<bool> blocked;        // [N]
-  std::vector<std::string> labels;  // [N], what the file calls its nodes; empty where that is 0 … N - 1
-  std::vector<double> prizes = {};  // [N], what a first visit is worth; empty where that is 1 everywhere
-  Places places = {};               // where they lie
+  std::vector<bool> blocked;             // [N]
+  std::vector<std::string> labels = {};  // [N], what the file calls its nodes; empty where that is 0 … N - 1
+  std::vector<double> prizes = {};       // [N], what a first visit is worth; empty where that is 1 everywhere
+  Places places = {};                    // where they lie
   GivenTask task = {};
   std::shared_ptr<const Multigraph> multigraph = {};  // null where `graph` has all edges, and they have no labels
 };

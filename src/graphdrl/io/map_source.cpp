@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
+#include <set>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/map_text.h"
+#include "graphdrl/io/readers.h"
 
 namespace graphdrl {
 namespace {
@@ -63,17 +62,15 @@ void shape_map(AnyMap& map, const MapOptions& options, const std::string& source
 }
 
 void check_options(const MapFormat& format, const MapOptions& options, const std::string& source) {
-  if (!options.cost_attribute.empty() && !format.takes_cost_attribute) {
-    refuse_option("--cost-attribute", "graphs whose edges have attributes", source);
-  }
-  if (!options.prize_attribute.empty() && !format.takes_prize_attribute) {
-    refuse_option("--prize-attribute", "graphs whose nodes have attributes", source);
-  }
-  if (options.directed && !format.takes_directed) {
-    refuse_option("--directed", "edge lists and TGF: other formats say it themselves", source);
-  }
-  if (options.cell_pixels != 1 && !format.takes_cell_pixels) refuse_option("--cell-pixels", "pictures", source);
-  if (options.unknown_is_free && !format.takes_unknown) refuse_option("--unknown", "ROS maps", source);
+  using enum MapFormat::Option;
+  const auto refuse = [&](MapFormat::Option option, bool given, const char* name, const char* what) {
+    if (given && (format.options & option) == 0) refuse_option(name, what, source);
+  };
+  refuse(kCostAttribute, !options.cost_attribute.empty(), "--cost-attribute", "graphs whose edges have attributes");
+  refuse(kPrizeAttribute, !options.prize_attribute.empty(), "--prize-attribute", "graphs whose nodes have attributes");
+  refuse(kDirected, options.directed, "--directed", "edge lists and TGF: other formats say it themselves");
+  refuse(kCellPixels, options.cell_pixels != 1, "--cell-pixels", "pictures");
+  refuse(kUnknown, options.unknown_is_free, "--unknown", "ROS maps");
 }
 
 NamedMap file_map(const std::filesystem::path& path, const MapOptions& options) {
@@ -107,14 +104,10 @@ std::vector<NamedMap> folder_maps(const std::filesystem::path& folder, const Map
   if (files.empty()) throw Error({.what = "no map files in the folder", .where = folder.string()});
   std::sort(files.begin(), files.end());
   // The picture of a ROS map is no map of its own.
-  const auto has_yaml = [&](const std::filesystem::path& file) {
-    const std::string ending = file.extension().string();
-    if (ending != ".pgm" && ending != ".png") return false;
-    return std::binary_search(files.begin(), files.end(), std::filesystem::path(file).replace_extension(".yaml"));
-  };
-  std::vector<std::filesystem::path> pictures;
-  std::copy_if(files.begin(), files.end(), std::back_inserter(pictures), has_yaml);
-  std::erase_if(files, [&](const auto& file) { return std::binary_search(pictures.begin(), pictures.end(), file); });
+  const std::set<std::filesystem::path> all(files.begin(), files.end());
+  std::erase_if(files, [&](std::filesystem::path file) {
+    return (file.extension() == ".pgm" || file.extension() == ".png") && all.contains(file.replace_extension(".yaml"));
+  });
   std::vector<NamedMap> maps;
   maps.reserve(files.size());
   for (const auto& file : files) maps.push_back(file_map(file, options));

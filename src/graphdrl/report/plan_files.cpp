@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/dot.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/graphml.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/report/picture.h"
 #include "graphdrl/report/report_page.h"
 

@@ -10,7 +10,6 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/task.h"
-#include "graphdrl/io/csv.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/io/text.h"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
-#include <png.h>
 
-#include "graphdrl/base/error.h"
+#include "graphdrl/io/picture.h"
 #include "graphdrl/io/utf8.h"
 #include "graphdrl/report/base64.h"
 #include "graphdrl/report/canvas.h"
@@ -9,21 +8,7 @@
 namespace graphdrl {
 namespace {
 
-std::string png_of(const Bitmap& bitmap) {
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(bitmap.width);
-  image.height = static_cast<png_uint_32>(bitmap.height);
-  image.format = PNG_FORMAT_RGB;
-  static_assert(sizeof(Colour) == 3);
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, bitmap.pixels.data(), 0, nullptr) == 0) {
-    throw Error({.what = fmt::format("the picture cannot be written ({})", escaped(image.message))});
-  }
-  bytes.resize(size);
-  return bytes;
-}
+static_assert(sizeof(Colour) == 3);
 
 // For texts and attributes of XML.
 std::string xml(std::string_view text) {
@@ -75,7 +60,8 @@ class SvgCanvas final : public Canvas {
     text_ += fmt::format(
         "<image x=\"{:.6g}\" y=\"{:.6g}\" width=\"{:.6g}\" height=\"{:.6g}\" style=\"image-rendering: pixelated\" "
         "href=\"data:image/png;base64,{}\"/>\n",
-        corner.x, corner.y, width, width * bitmap.height / bitmap.width, base64(png_of(bitmap)));
+        corner.x, corner.y, width, width * bitmap.height / bitmap.width,
+        base64(format_png(bitmap.width, bitmap.height, 3, bitmap.pixels.data())));
   }
 
   void segments(std::span<const Segment> segments, Colour colour, double width) override {

@@ -9,7 +9,7 @@
 #include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/task.h"
-#include "graphdrl/io/ascii_map.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/train/paper_replay_buffer.h"
 #include "graphdrl/train/recipe.h"

@@ -12,9 +12,9 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/eval/comparison.h"
-#include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/checked_json.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/readers.h"
 
 namespace graphdrl {
 namespace {

@@ -1,19 +1,25 @@
-// What users say of a map beside its file.
+// A map as its file holds it, and what users say beside the file.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
+
+#include "graphdrl/graph/graph_map.h"
+#include "graphdrl/graph/grid_map.h"
 
 namespace graphdrl {
+
+using AnyMap = std::variant<GridMap, GraphMap>;
 
 // As an attribute's name: every edge costs 1, every first visit is worth 1.
 inline constexpr std::string_view kNoAttribute = "none";
 
 struct MapOptions {
-  std::string cost_attribute = {};   // the edges' attribute that is their cost; empty: the first of cost_names()
-  std::string prize_attribute = {};  // the nodes' attribute that is their prize; empty: the first of prize_names()
+  std::string cost_attribute = {};   // the edges' attribute that is their cost; empty: the first of kCostNames
+  std::string prize_attribute = {};  // the nodes' attribute that is their prize; empty: the first of kPrizeNames
   bool directed = false;             // of formats that do not say: edges lead one way
 
   // Of grids.
