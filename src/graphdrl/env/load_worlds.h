@@ -1,6 +1,7 @@
 // Worlds and their nodes as users name them.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,12 @@ World load_one_world(const std::string& source, const MapOptions& options = {});
 // grid. A number is no node id in a world with labels, where it could be either. Throws Error, with the node's role
 // ("start"), where it is no valid node of the world.
 NodeId parse_node(const World& world, std::string_view text, std::string_view role);
+
+// A node as parse_node() takes it: its label, "row,col" on a grid, else its id.
+std::string node_name(const World& world, NodeId node);
+
+// A node by its id. Throws Error, with the node's role, where it is no valid node of the world.
+NodeId checked_node(const World& world, std::int64_t id, std::string_view role);
 
 // Where walks must end, as users say it: "anywhere", "start", or a node as for parse_node(). Throws Error.
 End parse_end(const World& world, std::string_view text);
