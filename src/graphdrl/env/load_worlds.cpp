@@ -111,6 +111,22 @@ NodeId parse_node(const World& world, std::string_view text, std::string_view ro
                .where = world.name()});
 }
 
+std::string node_name(const World& world, NodeId node) {
+  if (!world.labels().empty()) return world.labels()[node];
+  if (!world.has_cells()) return std::to_string(node);
+  const Cell cell = world.map()->cell(node);
+  return fmt::format("{},{}", cell.row, cell.col);
+}
+
+NodeId checked_node(const World& world, std::int64_t id, std::string_view role) {
+  const bool there = id >= 0 && id < world.node_count();
+  if (there && !world.is_blocked(static_cast<NodeId>(id))) return static_cast<NodeId>(id);
+  throw Error({.what = fmt::format("{} {}", role, there ? "on an obstacle" : "outside the map"),
+               .expected = "a valid node",
+               .got = std::to_string(id),
+               .where = world.name()});
+}
+
 End parse_end(const World& world, std::string_view text) {
   if (text == "anywhere") return End::anywhere();
   if (text == "start") return End::at_start();

@@ -35,6 +35,12 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map);
 // ("start"), where it is no valid node of the world.
 NodeId parse_node(const World& world, std::string_view text, std::string_view role);
 
+// A node as parse_node() takes it: its label, "row,col" on a grid, else its id.
+std::string node_name(const World& world, NodeId node);
+
+// A node by its id. Throws Error, with the node's role, where it is no valid node of the world.
+NodeId checked_node(const World& world, std::int64_t id, std::string_view role);
+
 // Where walks must end, as users say it: "anywhere", "start", or a node as for parse_node(). Throws Error.
 End parse_end(const World& world, std::string_view text);
 

@@ -20,8 +20,7 @@ GridEpisodes::GridEpisodes(EpisodesOptions options)
   if (!(this->options().budget.cost_in(example) >= 1)) {
     throw Error({.what = "bad budget", .expected = "1 or more, for a step"});
   }
-  allocate(static_cast<std::size_t>(this->options().most_nodes()) * kPaperFeatureCount,
-           kDirectionCount);
+  allocate(static_cast<std::size_t>(this->options().most_nodes()) * kPaperFeatureCount, kDirectionCount);
   std::ranges::fill(action_masks(), true);
   if (this->options().world) std::ranges::fill(encoders_, std::make_shared<const PaperFeatureEncoder>(example));
 }

@@ -1,38 +1,13 @@
 #include <fmt/format.h>
 
 #include "graphdrl/io/picture.h"
-#include "graphdrl/io/utf8.h"
-#include "graphdrl/report/base64.h"
 #include "graphdrl/report/canvas.h"
+#include "graphdrl/report/encoding.h"
 
 namespace graphdrl {
 namespace {
 
 static_assert(sizeof(Colour) == 3);
-
-// For texts and attributes of XML.
-std::string xml(std::string_view text) {
-  std::string result;
-  for (const char c : valid_utf8(text)) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c >= 0 && c < ' ' ? ' ' : c;  // XML has no other control characters
-    }
-  }
-  return result;
-}
 
 std::string points_of(std::span<const Point> points) {
   std::string text;
@@ -45,10 +20,10 @@ class SvgCanvas final : public Canvas {
   SvgCanvas(double width, double height, const std::string& title, const std::string& description,
             std::optional<double> seconds)
       : seconds_(seconds) {
-    text_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" viewBox=\"0 0 {0:g} {1:g}\" "
-        "role=\"img\" font-family=\"system-ui, sans-serif\">\n<title>{2}</title>\n<desc>{3}</desc>\n",
-        width, height, xml(title), xml(description));
+    text_ = fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0:g}" height="{1:g}" )"
+                        R"(viewBox="0 0 {0:g} {1:g}" role="img" font-family="system-ui, sans-serif">)"
+                        "\n<title>{2}</title>\n<desc>{3}</desc>\n",
+                        width, height, markup(title), markup(description));
   }
 
   void rectangle(Point corner, double width, double height, Colour fill) override {
@@ -93,7 +68,7 @@ class SvgCanvas final : public Canvas {
     const char* const anchors[] = {"start", "middle", "end"};
     text_ +=
         fmt::format("<text x=\"{:.6g}\" y=\"{:.6g}\" font-size=\"{:.6g}\" fill=\"{}\" text-anchor=\"{}\">{}</text>\n",
-                    at.x, at.y, size, hex(colour), anchors[static_cast<int>(anchor)], xml(text));
+                    at.x, at.y, size, hex(colour), anchors[static_cast<int>(anchor)], markup(text));
   }
 
   void walk_part(std::span<const Point> points, Colour colour, double width, double begin, double end) override {

@@ -1,7 +1,11 @@
-#include "graphdrl/report/base64.h"
+#include "graphdrl/report/encoding.h"
 
+#include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
+
+#include "graphdrl/io/utf8.h"
 
 namespace graphdrl {
 
@@ -13,6 +17,17 @@ std::string base64(const std::string& bytes) {
   std::string text(Letters(whole.begin()), Letters(whole.end()));
   text.replace(text.size() - padding, padding, padding, '=');
   return text;
+}
+
+std::string markup(std::string_view text) {
+  std::string result = valid_utf8(text);
+  std::replace_if(
+      result.begin(), result.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  boost::replace_all(result, "&", "&amp;");
+  boost::replace_all(result, "<", "&lt;");
+  boost::replace_all(result, ">", "&gt;");
+  boost::replace_all(result, "\"", "&quot;");
+  return result;
 }
 
 }  // namespace graphdrl
