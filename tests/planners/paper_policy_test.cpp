@@ -27,7 +27,7 @@ TEST(PaperPolicy, TakesTheDirectionOfTheHighestQValueEvenWhereItIsBlocked) {
   const auto results = roll_out(Episode(world, {.budget = 2}), starts, policy);
   EXPECT_EQ(results[0].walk, (std::vector<NodeId>{0, 0, 0}));
   EXPECT_EQ(results[1].walk, (std::vector<NodeId>{3, 1, 1}));
-  EXPECT_DOUBLE_EQ(results[1].coverage, 0.5);
+  EXPECT_EQ(results[1].prize, 2);
 }
 
 TEST(PaperPolicy, SeesTheWallThatItsParametersSay) {
