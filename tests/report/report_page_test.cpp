@@ -63,6 +63,18 @@ TEST(ReportPage, LaysOutWhatHasNoPlacesAsPicturesDo) {
   }
 }
 
+TEST(ReportPage, BeginsAnew) {
+  const std::vector<Edge> edges = {{0, 1}, {1, 2}, {2, 3}};
+  const World world("path", Graph::from_edges(4, edges), std::vector<bool>(4));
+  ReportPage page("Path");
+  page.add_plan(report_on(world, {0, 1}, 1));
+  const std::string before = page.data();
+  page.clear();
+  EXPECT_EQ(page.data(), ReportPage("Path").data());
+  page.add_plan(report_on(world, {0, 1}, 1));
+  EXPECT_EQ(page.data(), before);
+}
+
 TEST(ReportPage, KnowsEdgesPlacesAndCosts) {
   const std::vector<Edge> edges = {{0, 1, 2.5}, {1, 2, 1}};
   const World world("map", Graph::from_edges(3, edges), std::vector<bool>(3), {}, {1, 2, 5}, {},

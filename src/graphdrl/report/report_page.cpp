@@ -131,12 +131,13 @@ std::string nonce() {
 }  // namespace
 
 ReportPage::ReportPage(const std::string& title, bool watch)
-    : document_({{"version", kDataVersion},
-                 {"title", title},
-                 {"watch", watch},
-                 {"replays", Json::array()},
-                 {"runs", Json::array()},
-                 {"evaluations", Json::array()}}) {}
+    : document_({{"version", kDataVersion}, {"title", title}, {"watch", watch}}) {
+  clear();
+}
+
+void ReportPage::clear() {
+  for (const char* const section : {"replays", "runs", "evaluations"}) document_[section] = Json::array();
+}
 
 void ReportPage::add_plan(const Answer& report, const std::optional<MoveScores>& scores) {
   Json& replays = document_["replays"];
@@ -145,7 +146,9 @@ void ReportPage::add_plan(const Answer& report, const std::optional<MoveScores>&
     if (one["world"]["name"] == report.world.name()) replay = &one;
   }
   if (replay == nullptr) {
-    replays.push_back({{"title", report.world.name()}, {"world", world_json(report.world)}, {"plans", Json::array()}});
+    const std::string& name = report.world.name();
+    if (!worlds_.contains(name)) worlds_[name] = world_json(report.world);
+    replays.push_back({{"title", name}, {"world", worlds_[name]}, {"plans", Json::array()}});
     replay = &replays.back();
   }
   Json plan = plan_of(report);

@@ -17,6 +17,9 @@ class ReportPage {
   // watch: the page asks its server for data.json every two seconds.
   explicit ReportPage(const std::string& title, bool watch = false);
 
+  // Forgets what was added, but not the worlds: a graph without coordinates is laid out once.
+  void clear();
+
   // Plans on one world are shown together, two of them side by side.
   void add_plan(const Answer& report, const std::optional<MoveScores>& scores = {});
 
@@ -34,6 +37,7 @@ class ReportPage {
 
  private:
   nlohmann::ordered_json document_;
+  nlohmann::ordered_json worlds_;  // by name
 };
 
 }  // namespace graphdrl
