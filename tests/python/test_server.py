@@ -167,6 +167,16 @@ def test_the_page_follows_its_inputs(run_folder):
         assert process.poll() is None
 
 
+def test_the_page_is_not_made_again_without_need(port):
+    """Every making of the page has another nonce."""
+    pages = []
+    end = time.monotonic() + PATIENCE
+    while len(pages) < 4 or len(set(pages[-4:])) > 1:  # over more than a second
+        assert time.monotonic() < end, "made again and again"
+        pages.append(get(port, "/"))
+        time.sleep(0.5)
+
+
 def test_a_plan_of_a_graph_is_shown_again_after_a_change(tmp_path, run_folder):
     (tmp_path / "graph.tgf").write_text("1\n2\n3\n#\n1 2\n2 3\n")
     (tmp_path / "walk.csv").write_text("1 2\n")

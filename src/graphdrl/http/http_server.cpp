@@ -273,15 +273,19 @@ class HttpServer::Loop::Connection : public std::enable_shared_from_this<Connect
                            .path = std::string(target.substr(0, mark)),
                            .query = std::string(mark == std::string_view::npos ? "" : target.substr(mark + 1)),
                            .body = std::move(message.body())};
-    asio::post(loop_.handlers_, [self = shared_from_this(), request = std::move(request)] {
+    asio::post(loop_.handlers_, [self = shared_from_this(), request = std::move(request)]() mutable {
       HttpAnswer answer;
       try {
         answer = (*self->loop_.handler_of(request.path, request.method))(request);
+      } catch (const std::bad_alloc&) {
+        answer = text_answer(static_cast<int>(http::status::internal_server_error), "out of memory");
       } catch (const std::exception& error) {
         answer = text_answer(static_cast<int>(http::status::internal_server_error), error.what());
       }
-      asio::post(self->loop_.loop_,
-                 [self, answer = std::move(answer)]() mutable { self->send(std::move(answer), true); });
+      Loop& loop = self->loop_;
+      asio::post(loop.loop_, [connection = std::move(self), answer = std::move(answer)]() mutable {
+        connection->send(std::move(answer), true);
+      });
     });
   }
 
