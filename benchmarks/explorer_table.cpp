@@ -15,8 +15,8 @@
 #include <string_view>
 
 #include "graphdrl/base/parallel.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/env/walk.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/eval/statistics.h"
 #include "graphdrl/planners/baselines.h"

@@ -93,8 +93,8 @@ void time_learning_step(benchmark::State& state, const LearningCase& work, int t
   Rng rng(3);
   Rng rng_of_operators(3);
   PaperKernelLearner learner({}, rng);
-  PaperStack operators(torch::kCPU, 1);
-  const auto operators_learner = operators.learner(0, {}, rng_of_operators);
+  const auto operators = stack_sources("cpu", 1);
+  const auto operators_learner = operators.front()->make("cpu", {}, rng_of_operators);
   operators_learner->learn(work.batch, rng_of_operators);
   set_threads(threads);
   learner.learn(work.batch, rng);
@@ -136,9 +136,9 @@ void BM_QValuesByNodes(benchmark::State& state) {
   std::vector<float> q(kActionCount);
   for (auto _ : state) network.q_values(work.batch.graphs, work.batch.x, q);
   Rng rng_of_operators(4);  // the same weights
-  PaperStack operators(torch::kCPU, 1);
+  const auto operators = stack_sources("cpu", 1);
   std::vector<float> expected(q.size());
-  operators.learner(0, {}, rng_of_operators)->q_values(work.batch.graphs, work.batch.x, expected);
+  operators.front()->make("cpu", {}, rng_of_operators)->q_values(work.batch.graphs, work.batch.x, expected);
   for (int a = 0; a < kActionCount; ++a) {
     const float value = expected[a];
     if (!(std::abs(q[a] - value) <= 1e-3f * (1 + std::abs(value)))) return state.SkipWithError("wrong values");

@@ -29,6 +29,10 @@ add_library(graphdrl_cairo INTERFACE)
 target_include_directories(graphdrl_cairo SYSTEM INTERFACE ${CAIRO_INCLUDE_DIR})
 target_link_libraries(graphdrl_cairo INTERFACE ${CAIRO_LIBRARY})
 
+# xxHash's header alone is used.
+find_path(XXHASH_INCLUDE_DIR xxhash.h)
+require("${XXHASH_INCLUDE_DIR}" xxHash libxxhash-dev)
+
 # Chart.js, for the report page.
 find_file(CHART_LIBRARY chart.min.js PATHS /usr/share/javascript/chart.js)
 require("${CHART_LIBRARY}" Chart.js libjs-chart.js)

@@ -10,7 +10,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/world.h"
-#include "graphdrl/io/ascii_map.h"
+#include "graphdrl/io/readers.h"
 
 namespace graphdrl {
 

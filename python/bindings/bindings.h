@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "graphdrl/env/episode.h"
+#include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/policy.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/planners/plan.h"
@@ -60,9 +61,6 @@ template <typename T, typename Array>
 std::span<const T> values_of(const Array& array) {
   return {array.data(), array.size()};
 }
-
-// A node by its number. Throws Error, with the node's role, where there is no such valid node.
-NodeId checked_node(const World& world, std::int64_t node, std::string_view role);
 
 // Runs work on a thread of its own, without the interpreter's lock. Calls listen() with it some twenty times a second,
 // and once when the work is done. Where that raises, or the user presses Ctrl-C, calls stop(), which must make the work

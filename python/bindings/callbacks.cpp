@@ -7,8 +7,8 @@
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
+#include "graphdrl/env/task.h"
 
 namespace graphdrl::python {
 namespace {

@@ -1,7 +1,6 @@
 #include "bindings.h"
 #include "graphdrl/env/graph_episodes.h"
-#include "graphdrl/nn/first_visit_episodes.h"
-#include "graphdrl/nn/grid_episodes.h"
+#include "graphdrl/nn/feature_episodes.h"
 #include "graphdrl/report/picture.h"
 
 namespace graphdrl::python {

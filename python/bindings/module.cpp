@@ -7,15 +7,6 @@
 
 namespace graphdrl::python {
 
-NodeId checked_node(const World& world, std::int64_t node, std::string_view role) {
-  const bool there = node >= 0 && node < world.node_count();
-  if (there && !world.is_blocked(static_cast<NodeId>(node))) return static_cast<NodeId>(node);
-  throw Error({.what = std::string(role) + (there ? " on an obstacle" : " outside the map"),
-               .expected = "a valid node",
-               .got = std::to_string(node),
-               .where = world.name()});
-}
-
 NB_MODULE(_core, module) {
   // Globals and cycles that are still alive when Python ends are no leaks; do not report them.
   nb::set_leak_warnings(false);

@@ -49,15 +49,15 @@ double upper_bound(const World& world, const std::optional<std::string>& budget,
 }
 
 // What pickles keep beside the world and the walk.
-nb::dict claims_of(const Answer& report) {
+nb::dict claims_of(const Answer& answer) {
   nb::dict claims;
-  claims["budget"] = report.task.budget();
-  claims["end"] = report.task.end();
-  claims["policy"] = report.policy;
-  claims["bound"] = report.plan.bound;
-  claims["optimal"] = report.plan.optimal;
-  claims["unreachable"] = report.unreachable;
-  claims["elapsed_s"] = report.elapsed_s;
+  claims["budget"] = answer.task.budget();
+  claims["end"] = answer.task.end();
+  claims["policy"] = answer.policy;
+  claims["bound"] = answer.plan.bound;
+  claims["optimal"] = answer.plan.optimal;
+  claims["unreachable"] = answer.unreachable;
+  claims["elapsed_s"] = answer.elapsed_s;
   return claims;
 }
 
@@ -68,14 +68,14 @@ Answer restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, con
   const auto end = nb::cast<NodeId>(claims["end"]);
   const Task task(world, nodes.front(), nb::cast<double>(claims["budget"]),
                   end == kNoNode ? End::anywhere() : End::at(end));
-  Answer report{.world = world,
+  Answer answer{.world = world,
                 .task = task,
                 .policy = nb::cast<std::string>(claims["policy"]),
                 .plan = plan_of_walk(task, std::move(nodes), nb::cast<bool>(claims["optimal"])),
                 .unreachable = nb::cast<int>(claims["unreachable"]),
                 .elapsed_s = nb::cast<double>(claims["elapsed_s"])};
-  report.plan.bound = nb::cast<double>(claims["bound"]);
-  return report;
+  answer.plan.bound = nb::cast<double>(claims["bound"]);
+  return answer;
 }
 
 }  // namespace
@@ -85,27 +85,27 @@ void bind_planning(nb::module_& module) {
       .def_static("restore", &restore, nb::arg("world"), nb::arg("walk"), nb::arg("claims"))
       .def_prop_ro("claims", &claims_of)
       .def_prop_ro(
-          "walk", [](const Answer& report) { return to_numpy(report.plan.walk); }, nb::rv_policy::automatic)
+          "walk", [](const Answer& answer) { return to_numpy(answer.plan.walk); }, nb::rv_policy::automatic)
       .def_prop_ro(
-          "costs", [](const Answer& report) { return to_numpy(costs_so_far(report)); }, nb::rv_policy::automatic)
-      .def_prop_ro("visited", [](const Answer& report) { return report.plan.visited; })
-      .def_prop_ro("prize", [](const Answer& report) { return report.plan.prize; })
-      .def_prop_ro("cost", [](const Answer& report) { return report.plan.cost; })
-      .def_prop_ro("bound", [](const Answer& report) { return report.plan.bound; })
-      .def_prop_ro("optimal", [](const Answer& report) { return report.plan.optimal; })
-      .def_prop_ro("budget", [](const Answer& report) { return report.task.budget(); })
-      .def_prop_ro("end", [](const Answer& report) { return report.task.end(); })
-      .def_prop_ro("policy", [](const Answer& report) { return report.policy; })
-      .def_prop_ro("elapsed_s", [](const Answer& report) { return report.elapsed_s; })
-      .def_prop_ro("summary", [](const Answer& report) { return plan_summary(report); })
-      .def("json", [](const Answer& report) { return plan_json(report).dump(); })
+          "costs", [](const Answer& answer) { return to_numpy(costs_so_far(answer)); }, nb::rv_policy::automatic)
+      .def_prop_ro("visited", [](const Answer& answer) { return answer.plan.visited; })
+      .def_prop_ro("prize", [](const Answer& answer) { return answer.plan.prize; })
+      .def_prop_ro("cost", [](const Answer& answer) { return answer.plan.cost; })
+      .def_prop_ro("bound", [](const Answer& answer) { return answer.plan.bound; })
+      .def_prop_ro("optimal", [](const Answer& answer) { return answer.plan.optimal; })
+      .def_prop_ro("budget", [](const Answer& answer) { return answer.task.budget(); })
+      .def_prop_ro("end", [](const Answer& answer) { return answer.task.end(); })
+      .def_prop_ro("policy", [](const Answer& answer) { return answer.policy; })
+      .def_prop_ro("elapsed_s", [](const Answer& answer) { return answer.elapsed_s; })
+      .def_prop_ro("summary", [](const Answer& answer) { return plan_summary(answer); })
+      .def("json", [](const Answer& answer) { return plan_json(answer).dump(); })
       .def("svg",
-           [](const Answer& report) {
-             return Picture(report.world, report.plan.walk, report.world.name(), plan_summary(report)).svg();
+           [](const Answer& answer) {
+             return Picture(answer.world, answer.plan.walk, answer.world.name(), plan_summary(answer)).svg();
            })
-      .def("save", [](const Answer& report, const std::string& file) {
-        check_plan_file(report.world, file);
-        write_plan(report, file);
+      .def("save", [](const Answer& answer, const std::string& file) {
+        check_plan_file(answer.world, file);
+        write_plan(answer, file);
       });
   module.def("plan", &plan, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(), nb::arg("end").none(),
              nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"),

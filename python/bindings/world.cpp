@@ -2,7 +2,6 @@
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/io/attributes.h"
@@ -176,10 +175,10 @@ void bind_worlds(nb::module_& module) {
   const auto texts = [](std::span<const std::string_view> all) {
     return nb::cast(std::vector(all.begin(), all.end()));
   };
-  module.attr("COST_NAMES") = texts(cost_names());
-  module.attr("PRIZE_NAMES") = texts(prize_names());
+  module.attr("COST_NAMES") = texts(kCostNames);
+  module.attr("PRIZE_NAMES") = texts(kPrizeNames);
   nb::list places;
-  for (const PlaceNames& one : place_names()) places.append(nb::make_tuple(one.x, one.y, one.unit));
+  for (const PlaceNames& one : kPlaceNames) places.append(nb::make_tuple(one.x, one.y, one.unit));
   module.attr("PLACE_NAMES") = places;
 }
 

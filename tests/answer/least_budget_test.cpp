@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "graphdrl/base/random.h"
-#include "graphdrl/io/tsplib.h"
+#include "graphdrl/io/readers.h"
 #include "support.h"
 
 namespace graphdrl {

@@ -1,4 +1,4 @@
-#include "graphdrl/env/budget.h"
+#include "graphdrl/env/task.h"
 
 #include <gmock/gmock.h>
 

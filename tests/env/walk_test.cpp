@@ -1,4 +1,4 @@
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 
 #include <gmock/gmock.h>
 

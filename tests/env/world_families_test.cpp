@@ -35,7 +35,7 @@ TEST(WorldFamilies, GiveConnectedWorldsThatAreTheSameEveryTime) {
         for (int index = 0; index < 5; ++index) {
           for (const Split split : {Split::kTrain, Split::kValidation, Split::kTest}) {
             const World world = split_world(spec, split, index);
-            EXPECT_EQ(count_components(world.graph(), world.blocked()), 1) << spec.name();
+            EXPECT_EQ(find_components(world.graph(), world.blocked()).count(), 1) << spec.name();
             EXPECT_EQ(world.graph().directed(), directed) << spec.name();
             EXPECT_EQ(world.graph().weighted(), weighted) << spec.name();
             EXPECT_EQ(spelled(world), spelled(split_world(spec, split, index)));
@@ -92,7 +92,7 @@ TEST(WorldFamilies, GoOnAboveTheFormerLimits) {
   for (const WorldFamily& family : world_families()) {
     const WorldSpec spec{std::string(family.name), family.grid ? 501 : 20'001};
     const World world = split_world(spec, Split::kTest, 0);
-    EXPECT_EQ(count_components(world.graph(), world.blocked()), 1) << spec.name();
+    EXPECT_EQ(find_components(world.graph(), world.blocked()).count(), 1) << spec.name();
     EXPECT_GT(world.valid_count(), 15'000) << spec.name();
   }
 }
@@ -103,7 +103,7 @@ TEST(WorldFamilies, BlockTheShareAskedFor) {
   };
   const World world = make("obstacles", 100, 0.2);
   EXPECT_EQ(world.name(), "obstacles-100");
-  EXPECT_EQ(count_components(world.graph(), world.blocked()), 1);
+  EXPECT_EQ(find_components(world.graph(), world.blocked()).count(), 1);
   EXPECT_NEAR(world.valid_count(), 8000, 200);
   EXPECT_EQ(make("obstacles", 9, 0).valid_count(), 81);
   for (int size = 3; size < 20; ++size) EXPECT_GE(make("obstacles", size, 0.9).valid_count(), 1);

@@ -5,6 +5,7 @@
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/nn/paper_network.h"
+#include "graphdrl/planners/registry.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -83,6 +84,21 @@ TEST(Compare, NamesPoliciesOfOneStemByTheirPaths) {
   EXPECT_EQ(both.overall[0].policy, files[0]);
   EXPECT_EQ(both.overall[1].policy, files[1]);
   EXPECT_EQ(compare(paper_worlds(), {.policies = {files[0]}, .episodes = 1}).overall[0].policy, "policy");
+}
+
+// The first policy takes away the file of the second one.
+TEST(Compare, ReadsAPolicyFileOnce) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "policy.safetensors").string();
+  write_policy_file(file, PaperParameters());
+  const auto thief = [&] {
+    std::filesystem::remove(file);
+    return make_policy("random", 1);
+  };
+  const Comparison both =
+      compare(paper_worlds(), {.policies = {"thief", file}, .episodes = 1, .own_policies = {{"thief", thief}}});
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_EQ(both.overall[1].maps, 10);
 }
 
 TEST(Compare, LeavesOutWhatIsOutOfReach) {

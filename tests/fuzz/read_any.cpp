@@ -13,7 +13,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/map_formats.h"
-#include "graphdrl/io/map_text.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/safetensors.h"
 #include "graphdrl/report/plan_files.h"
 
@@ -64,9 +64,9 @@ void read_map(const MapFormat& format, const std::string& text) {
 void read_plan_text(const std::string& text) {
   static const World world("house", Graph::from_edges(4, std::vector<Edge>{{0, 1}, {1, 2}, {2, 3}}),
                            std::vector<bool>(4), {"hall", "kitchen", "3", "attic"});
-  const Answer report = parse_plan(world, text, "input");
-  if (report.plan.walk.empty()) fail("an empty walk was taken");
-  plan_json(report);
+  const Answer answer = parse_plan(world, text, "input");
+  if (answer.plan.walk.empty()) fail("an empty walk was taken");
+  plan_json(answer);
 }
 
 using Reader = std::function<void(const std::string&)>;

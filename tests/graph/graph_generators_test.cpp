@@ -13,7 +13,7 @@ namespace graphdrl {
 namespace {
 
 bool is_connected(const Graph& graph) {
-  return count_components(graph, std::vector<bool>(graph.node_count())) == 1;
+  return find_components(graph, std::vector<bool>(graph.node_count())).count() == 1;
 }
 
 double mean_degree(const Graph& graph) {
@@ -191,15 +191,11 @@ TEST(OneWayEdges, LeadOneWayInTheirShare) {
   EXPECT_EQ(with_one_way_edges(graph, 0, rng).edge_count(), 2 * graph.edge_count());
 }
 
-TEST(Graph, InducesTheEdgesAmongTheNodesGiven) {
-  const Graph grid = Graph::grid(2, 3);  // 0 1 2 over 3 4 5
-  std::vector<NodeId> number(6, kNoNode);
-  const std::vector<NodeId> nodes = {4, 1, 0};
-  const Graph part = grid.induced(nodes, number);
-  EXPECT_EQ(part.node_count(), 3);
-  EXPECT_EQ(part.edges().size(), 2u);
-  EXPECT_EQ(part.neighbours(1).size(), 2u);  // node 1: 4 and 0
-  EXPECT_EQ(number, std::vector<NodeId>(6, kNoNode));
+TEST(LargestPart, IsThatOfTheLowestNodeAmongEquallyLargeOnes) {
+  const std::vector<Edge> edges = {{1, 2, 5}, {0, 3, 4}};
+  const Graph part = largest_part(Graph::from_edges(4, edges));
+  EXPECT_EQ(part.node_count(), 2);
+  EXPECT_EQ(part.cost(0, 0), 4);
 }
 
 }  // namespace

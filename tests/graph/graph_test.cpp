@@ -175,8 +175,8 @@ TEST(Search, FindsTheNearestInNeighbourOrder) {
 }
 
 TEST(Search, CountsComponents) {
-  EXPECT_EQ(count_components(Graph::grid(1, 3), {false, true, false}), 2);
-  EXPECT_EQ(count_components(Graph::grid(2, 2), {false, false, false, false}), 1);
+  EXPECT_EQ(find_components(Graph::grid(1, 3), {false, true, false}).count(), 2);
+  EXPECT_EQ(find_components(Graph::grid(2, 2), {false, false, false, false}).count(), 1);
 }
 
 // Whatever the number of threads, of all edges, one by one.

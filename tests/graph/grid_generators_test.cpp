@@ -18,7 +18,7 @@ std::int64_t free_edges(const GridMap& map) {
 }
 
 int parts(const GridMap& map) {
-  return count_components(Graph::grid(map.rows, map.cols), map.blocked);
+  return find_components(Graph::grid(map.rows, map.cols), map.blocked).count();
 }
 
 int dead_ends(const GridMap& map) {

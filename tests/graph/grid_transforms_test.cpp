@@ -1,4 +1,4 @@
-#include "graphdrl/graph/grid_transforms.h"
+#include "graphdrl/graph/grid_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "graphdrl/io/ascii_map.h"
+#include "graphdrl/io/readers.h"
 
 #include <gtest/gtest.h>
 

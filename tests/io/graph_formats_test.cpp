@@ -71,7 +71,7 @@ TEST(Dot, TheStartOfAModelIsNoState) {
     EXPECT_THAT(model.map.labels, ElementsAre("off", "on"));
     EXPECT_EQ(model.map.task.start, 1);
     EXPECT_EQ(model.map.graph.edge_count(), 2);
-    EXPECT_THAT(model.notes, IsEmpty());
+    EXPECT_THAT(model.notes, ElementsAre(HasSubstr("`__start` points at 's1', the start, and is left out")));
   }
   const GraphMap last = graph_of("digraph { 6; 0; __start0 [label=\"\"]; __start0 -> 6; 6 -> 0 }");
   EXPECT_THAT(last.labels, ElementsAre("6", "0"));
@@ -227,6 +227,12 @@ TEST(GraphWalker, ModelsAreDirectedGraphsWithAStart) {
   EXPECT_EQ(graph_of(walker_model(R"("startElementId": "e0",)")).task.start, 1);
   EXPECT_EQ(graph_of(walker_model(R"("startElementId": "e2",)")).task.start, 0);
   EXPECT_EQ(noted_graph(walker_model(""), {.cost_attribute = "weight"}).map.graph.cost(0, 0), 0.3);
+  EXPECT_THAT(noted_graph(walker_model("")).notes, ElementsAre(HasSubstr("so its only edge from nowhere does")));
+  EXPECT_THAT(noted_graph(walker_model(R"("startElementId": "v0",)")).notes, IsEmpty());
+  const NotedGraph two = noted_graph(
+      R"({"models": [{"vertices": [{"id": "a"}], "edges": [{"targetVertexId": "a"}, {"targetVertexId": "a"}]}]})");
+  EXPECT_EQ(two.map.task.start, kNoNode);
+  EXPECT_THAT(two.notes, ElementsAre(HasSubstr("none of its 2 edges from nowhere is taken")));
 }
 
 TEST(GraphWalker, RefusesWhatIsNoModel) {
@@ -236,6 +242,35 @@ TEST(GraphWalker, RefusesWhatIsNoModel) {
   EXPECT_THAT(graph_complaint(R"({"models": [{"vertices": [{"id": "a"}], "edges": [{"targetVertexId": "b"}]}]})"),
               HasSubstr("edges[0]: no such node"));
   EXPECT_THAT(graph_complaint(walker_model(R"("startElementId": "v7",)")), HasSubstr("models[0]: no such node"));
+}
+
+// Few bytes may say many attributes of many nodes.
+TEST(GraphFormats, LimitDefaultsByTheSizeOfTheFile) {
+  constexpr int kDefaults = 2000;
+  constexpr int kNodes = 4000;
+  std::string xml = "<graphml>";
+  std::string gexf = "<gexf><graph><attributes>";
+  std::string dot = "graph { node [";
+  for (int i = 0; i < kDefaults; ++i) {
+    xml += fmt::format("<key id='{}'><default/></key>", i);
+    gexf += fmt::format("<attribute id='{}'><default/></attribute>", i);
+    dot += fmt::format("a{} ", i);
+  }
+  xml += "<graph>";
+  gexf += "</attributes><nodes>";
+  dot += "]";
+  for (int i = 0; i < kNodes; ++i) {
+    xml += fmt::format("<node id='{}'/>", i);
+    gexf += fmt::format("<node id='{}'/>", i);
+    dot += fmt::format(" {}", i);
+  }
+  EXPECT_THAT(graph_complaint(xml + "</graph></graphml>"), HasSubstr("far more edges or attributes than a file"));
+  EXPECT_THAT(graph_complaint(gexf + "</nodes></graph></gexf>"), HasSubstr("far more edges or attributes than a file"));
+  EXPECT_THAT(graph_complaint(dot + "}"), HasSubstr("far more edges or attributes than a file"));
+  // A default in place of the one before.
+  std::string states = "digraph {";
+  for (int i = 0; i < kNodes; ++i) states += fmt::format(" node [shape=circle]; {}", i);
+  EXPECT_EQ(graph_of(states + "}").graph.node_count(), kNodes);
 }
 
 // The same graph in every format that has attributes: node a, node b, with what is given, and an edge.

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "graphdrl/io/cell_table.h"
-#include "graphdrl/io/chao.h"
-#include "graphdrl/io/moving_ai.h"
+#include "graphdrl/io/readers.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -52,7 +50,10 @@ TEST(MapFormats, AreKnownByTheirContent) {
       {"edge-list", "0,1,1\n"},
       {"edge-list", "4 4\n2 4\n1 3\n2 4\n"},
       {"edge-list", "10,11\n11,10\n"},
+      {"edge-list", "1 2 3 4 5 6 7 8 9\n2 3 1 1 1 1 1 1 1\n"},
       {"tgf", "1 a\n2\n#\n1 2\n"},
+      {"tgf", "a\nb\n#\n"},
+      {"ascii", ".\n#\n.\n"},
       {"chao", "n 2\nm 1\ntmax 3\n"},
       {"metis", "% a ring\n3 3\n2 3\n1 3\n1 2\n"},
       {"cell-table", "0,1\n0,0\n"},
@@ -285,6 +286,8 @@ TEST(Metis, HoldsNeighboursOfEachNode) {
   EXPECT_EQ(costs.graph.edge_count(), 1);
   EXPECT_EQ(costs.graph.cost(1, 0), 7);
   EXPECT_EQ(read_graph("3 1\n2\n1\n\n").graph.node_count(), 3);
+  EXPECT_EQ(note_of("3 1\n2\n1\n\n"), "file: taken for a graph of METIS: 3 nodes and the neighbours of each");
+  EXPECT_THAT(note_of("3 1 010\n5 2\n6 1\n8\n"), HasSubstr("of each; weights and sizes of nodes are skipped"));
   const auto complaint = [](const std::string& text) { return error_of([&] { read(text); }); };
   EXPECT_THAT(complaint("3 3\n2 3\n1 3\n2 2\n"), HasSubstr("looks like a graph of METIS, but edge 1 3 is not listed"));
   EXPECT_THAT(complaint("2 1 1\n2 5\n1 6\n"), HasSubstr("not listed at both of its ends"));

@@ -1,4 +1,4 @@
-#include "graphdrl/io/map_text.h"
+#include "graphdrl/io/readers.h"
 
 #include <gmock/gmock.h>
 #include <zlib.h>

@@ -1,4 +1,4 @@
-#include "graphdrl/io/node_link.h"
+#include "graphdrl/io/readers.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

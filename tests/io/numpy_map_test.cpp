@@ -1,4 +1,4 @@
-#include "graphdrl/io/numpy_map.h"
+#include "graphdrl/io/readers.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "graphdrl/io/readers.h"
 #include "support.h"
 
 namespace graphdrl {

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "graphdrl/io/checksum.h"
 #include "graphdrl/io/file.h"
 #include "support.h"
 
@@ -84,6 +85,36 @@ TEST(Safetensors, SurvivesDeepNesting) {
   const std::string shape = std::string(90, '[') + std::string(90, ']');
   EXPECT_THAT(error_for(file_with(R"({"a":{"dtype":"F32","shape":[)" + shape + R"(],"data_offsets":[0,4]}})", 4)),
               HasSubstr("whole numbers, got '" + std::string(60, '[')));
+}
+
+TEST(Safetensors, WithAChecksumIsRefusedWithAnyFlippedBit) {
+  const std::vector<float> a = {1, 2, 3};
+  const std::vector<TensorView> tensors = {{"a", {3}, std::span(a)}, {"b", {1, 3}, std::span(a)}};
+  const std::string whole = format_safetensors(tensors, {{"layout", "3"}, {"progress", "1e5"}});
+  const auto error_of_use = [](const std::string& content) {
+    return error_of([&] { Safetensors::parse(content, "f").require_checksum(); });
+  };
+  EXPECT_EQ(error_of_use(whole), "");
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    std::string flipped = whole;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+    EXPECT_NE(error_of_use(flipped), "") << bit;
+  }
+  EXPECT_EQ(error_for(file_with(R"({"__metadata__":{"layout":"2"}})", 0)), "");
+  EXPECT_THAT(error_of_use(file_with(R"({"__metadata__":{"layout":"3"}})", 0)), HasSubstr("checksum is missing"));
+}
+
+// Another writer's order of keys and its spaces make no difference; the rule is in safetensors.h.
+TEST(Safetensors, HaveAChecksumThatOthersCanCompute) {
+  const std::string data(4, '\0');
+  const std::string sum =
+      checksum({R"({"__metadata__":{"k":"v"},"a":{"data_offsets":[0,4],"dtype":"F32","shape":[1]}})", data});
+  const std::string header =
+      R"({ "a": {"dtype": "F32", "shape": [1], "data_offsets": [0, 4]}, "__metadata__": {"xxh3_64": ")" + sum +
+      R"(", "k": "v"}})";
+  EXPECT_EQ(error_for(file_with(header, 4)), "");
+  EXPECT_EQ(checksum({}), "2d06800538d394c2");  // the hash of nothing, in xxHash's specification
+  EXPECT_EQ(checksum({"1234", "56789"}), checksum({"123456789"}));
 }
 
 TEST(Safetensors, EveryTruncationIsAnErrorAndNoDamageACrash) {

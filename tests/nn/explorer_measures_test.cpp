@@ -1,4 +1,4 @@
-#include "graphdrl/nn/explorer_measures.h"
+#include "graphdrl/nn/explorer_features.h"
 
 #include <gtest/gtest.h>
 
@@ -49,6 +49,25 @@ TEST(Horizon, EndsAtItsSizeAndKnowsThatMoreLiesBeyond) {
   horizon.gather(Exploration(of_small, ground_of_small));
   EXPECT_EQ(horizon.size(), 3);
   EXPECT_TRUE(horizon.is_all());
+}
+
+TEST(ExplorerMeasures, CountNoWorkThatOthersHaveClaimed) {
+  const World world = corridor(3 * kExplorerHorizon);
+  const Task alone(world, kExplorerHorizon, 2 * kExplorerHorizon);
+  NodeSet claimed(world.node_count());
+  for (const NodeId node : {0, 1, kExplorerHorizon + 5}) claimed.insert(node);  // two beyond the horizon, one within
+  const NodeSet ground = alone.ground();
+  const auto work = [&](const Task& task) {
+    const Exploration state(task, ground);
+    Horizon horizon;
+    NearestFirst search;
+    Nearby nearby;
+    horizon.gather(state);
+    measure_nearby(state, horizon, kExplorerScope, search, nearby);
+    return nearby.work;
+  };
+  EXPECT_EQ(work(alone), 3 * kExplorerHorizon - 1);
+  EXPECT_EQ(work(alone.without(claimed)), 3 * kExplorerHorizon - 4);
 }
 
 TEST(ExplorerMeasures, FindTheTreeThatHangsOnACycle) {

@@ -220,7 +220,7 @@ TEST(ExplorerNetwork, IsItsHeadOnTheConvolution) {
   Rng rng(6);
   const ExplorerParameters parameters(rng);
   constexpr int kWidth = kExplorerConvShape.width;
-  GatedGraphConv<float> conv(kExplorerConvShape);
+  GatedGraphConv conv(kExplorerConvShape);
   conv.set_weights(parameters.conv("conv"));
   std::vector<float> embedded(static_cast<std::size_t>(batch.graphs.node_count()) * kWidth);
   conv.forward(batch.graphs, batch.node_x.data(), embedded.data(), /*keep=*/false);

@@ -1,4 +1,4 @@
-#include "graphdrl/nn/first_visit_episodes.h"
+#include "graphdrl/nn/feature_episodes.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "graphdrl/nn/grid_episodes.h"
+#include "graphdrl/nn/feature_episodes.h"
 
 #include <gmock/gmock.h>
 

@@ -10,6 +10,7 @@
 
 #include "graphdrl/io/file.h"
 #include "graphdrl/nn/paper_features.h"
+#include "safetensors_support.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -129,9 +130,13 @@ TEST(PolicyFile, IsRefusedWhenItIsAnothersOrDamaged) {
   const auto replaced = [&](const std::string& from, const std::string& to) {
     std::string content = whole;
     content.replace(content.find(from), from.size(), to);
-    return content;
+    return with_checksum(content);
   };
   EXPECT_EQ(error_for(whole), "");
+  std::string flipped = whole;
+  flipped[whole.size() - 5] = static_cast<char>(flipped[whole.size() - 5] ^ 1);
+  EXPECT_THAT(error_for(flipped), HasSubstr("the file is damaged"));
+  EXPECT_THAT(error_for(replaced("\"layout\":\"2\"", "\"layout\":\"9\"")), HasSubstr("expected layout 2, got '9'"));
   EXPECT_THAT(error_for(whole.substr(0, whole.size() - 1)), HasSubstr("lies outside the file"));
   EXPECT_THAT(error_for(whole.substr(0, 100)), HasSubstr("not a whole safetensors file"));
   EXPECT_THAT(error_for(replaced("[4,7,7]", "[7,4,7]")), HasSubstr("wrong shape: expected [4, 7, 7], got [7, 4, 7]"));

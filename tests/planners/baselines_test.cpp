@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/eval/rollout.h"
 #include "support.h"
 
@@ -43,8 +43,8 @@ TEST(RandomPolicies, DrawUniformly) {
   Episode episode(world, {.budget = 25});
   episode.reset(1);  // left and right are open, up is off the map, down is blocked
   const Observation observation = episode.observation();
-  RandomPolicy random(1);
-  RandomWalkPolicy random_walk(1);
+  RandomPolicy random(1, /*blocked_too=*/true);
+  RandomPolicy random_walk(1, /*blocked_too=*/false);
   std::array<int, 4> directions{};
   std::array<int, 4> steps{};
   for (int i = 0; i < 8'000; ++i) {
@@ -62,7 +62,7 @@ TEST(RandomPolicies, DrawUniformly) {
 
 TEST(Baselines, StopWhereThereIsNowhereToGo) {
   const World world = grid_world(".#\n#.\n");
-  RandomWalkPolicy random_walk(1);
+  RandomPolicy random_walk(1, /*blocked_too=*/false);
   const NodeId start = 0;
   EXPECT_THAT(roll_out(Episode(world, {.budget = 25}), {&start, 1}, random_walk).front().walk, ElementsAre(0));
   DepthFirstPlanner dfs;
@@ -81,8 +81,8 @@ TEST(RandomPolicies, EndWhereTheyMust) {
     const NodeId end = draw();
     const EpisodeOptions options{.budget = 12, .end = End::at(end)};
     if (costs_to(world.into(), end)[start] > 12) continue;
-    RandomPolicy random(rng.next());
-    RandomWalkPolicy random_walk(rng.next());
+    RandomPolicy random(rng.next(), /*blocked_too=*/true);
+    RandomPolicy random_walk(rng.next(), /*blocked_too=*/false);
     for (Policy* policy : {static_cast<Policy*>(&random), static_cast<Policy*>(&random_walk)}) {
       const std::vector<NodeId> walk = roll_out(Episode(world, options), {&start, 1}, *policy).front().walk;
       ASSERT_EQ(walk.back(), end);

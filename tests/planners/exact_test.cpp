@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/planner_policy.h"
 #include "support.h"

@@ -1,13 +1,12 @@
 // Bounds and walks of branch and cut beside brute force, on thousands of small random worlds of every kind.
-#include "graphdrl/planners/lp_bound.h"
+#include "graphdrl/planners/bound.h"
 
 #include <gtest/gtest.h>
 #include <optional>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/planners/baselines.h"
-#include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/exact.h"
 #include "support.h"
 

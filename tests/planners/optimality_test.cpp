@@ -6,7 +6,7 @@
 #include <map>
 #include <queue>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/baselines.h"

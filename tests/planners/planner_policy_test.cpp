@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/planners/exact.h"
 #include "support.h"
 
@@ -91,6 +91,23 @@ TEST(PlannerPolicy, PlansAnewOnceMoreIsKnown) {
   EXPECT_EQ(from, 1) << "it goes on from the last plan";
   EXPECT_EQ(chosen(policy, Seen(later, {0, 1, 2, 3}, 6)), kNoNode);
   EXPECT_EQ(plans, 2);
+}
+
+TEST(PlannerPolicy, PlansAnewOnceOthersClaimNodes) {
+  int plans = 0;
+  int from = 0;
+  PlannerPolicy policy(std::make_unique<CountingPlanner>(plans, from));
+  const View path = path_known(5, 1, 0);
+  Seen middle(path, {2}, 2);
+  EXPECT_EQ(chosen(policy, middle), 1);
+  NodeSet claimed(5);
+  claimed.insert(0);
+  claimed.insert(1);
+  middle.task = middle.task.without(claimed);
+  EXPECT_EQ(chosen(policy, middle), 3) << "where something is left";
+  EXPECT_EQ(chosen(policy, middle), 3);
+  EXPECT_EQ(plans, 2);
+  EXPECT_EQ(from, 1) << "it goes on from the last plan";
 }
 
 TEST(PlannerPolicy, TakesNoPlanOfAnotherWorld) {

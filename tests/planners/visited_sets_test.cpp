@@ -19,13 +19,13 @@ TEST(VisitedSets, AreWholeSets) {
     std::vector<NodeSet> twins = {start};
     for (int level = 0; level < 120; ++level) {
       const auto width = 1 + rng.below(round % 5 == 0 ? 3 : 40);
-      std::vector<VisitedSets::Child> children;
+      std::vector<Candidate> children;
       std::vector<NodeSet> next;
       for (std::uint32_t i = 0; i < width; ++i) {
         const int parent = static_cast<int>(rng.below(static_cast<std::uint32_t>(twins.size())));
         NodeId node = static_cast<NodeId>(rng.below(kNodes));
         while (twins[parent].contains(node)) node = (node + 1) % kNodes;
-        children.push_back({parent, node});
+        children.push_back({.parent = parent, .node = node});
         next.push_back(twins[parent]);
         next.back().insert(node);
       }
@@ -47,14 +47,14 @@ TEST(VisitedSets, ShrinkWhenWalksAgree) {
   VisitedSets sets(NodeSet(kNodes), kNodes);
   std::vector<NodeSet> twins = {NodeSet(kNodes)};
   for (NodeId level = 0; level < 120; ++level) {
-    std::vector<VisitedSets::Child> children;
+    std::vector<Candidate> children;
     std::vector<NodeSet> next;
     for (int walk = 0; walk < kWidth; ++walk) {
       // Each on its own, until all go on from one of them.
       const bool together = level % 40 == 0;
       const int parent = together || twins.size() == 1 ? 0 : walk;
       const NodeId node = level * kWidth + walk;
-      children.push_back({parent, node});
+      children.push_back({.parent = parent, .node = node});
       next.push_back(twins[parent]);
       next.back().insert(node);
     }

@@ -77,3 +77,11 @@ def test_a_plan_without_cells_names_its_ends(run):
     text = run("graphdrl", "plan", ROOT / "examples/5-dot/login.dot", "--budget", "20", "--start", "start").stdout
     assert re.search(r"^walk of 17 steps to .* \(node \d+\); --walk prints them$", text, re.MULTILINE)
     assert "\n\n" not in text
+
+
+def test_a_short_walk_on_a_graph_stands_on_one_line(run, tmp_path):
+    (tmp_path / "graph.txt").write_text("a b\nb c\n")
+    command = ["plan", tmp_path / "graph.txt", "--budget", "2"]
+    assert run("graphdrl", *command).stdout.endswith("\nwalk of 2 steps: a, b, c\n")
+    narrow = run("graphdrl", *command, env=os.environ | {"COLUMNS": "23"}).stdout
+    assert narrow.endswith("\nwalk of 2 steps to c (node 2); --walk prints them\n")

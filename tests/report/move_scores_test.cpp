@@ -11,8 +11,8 @@ namespace {
 TEST(MoveScores, KnowWhereTheWalkMustEnd) {
   const World world = grid_world(".....\n");
   const Task task(world, 0, 4, End::at_start());
-  Answer report{.world = world, .task = task, .policy = "any", .plan = plan_of_walk(task, {0, 1, 2, 1, 0})};
-  const MoveScores scores = scores_along(report, "explorer");
+  Answer answer{.world = world, .task = task, .policy = "any", .plan = plan_of_walk(task, {0, 1, 2, 1, 0})};
+  const MoveScores scores = scores_along(answer, "explorer");
   ASSERT_EQ(scores.steps.size(), 5u);
   ASSERT_EQ(scores.steps[1].size(), 1u);
   EXPECT_EQ(scores.steps[1][0].node, 2);

@@ -60,6 +60,11 @@ TEST(Picture, RunsOverAnEdgeAgainBesideIt) {
   EXPECT_THAT(svg, HasSubstr("230,54 190,54\""));
 }
 
+TEST(FirstVisits, AreTheStepsOfTheWalk) {
+  EXPECT_EQ(first_visits(grid_world("...\n.#.\n"), std::vector<NodeId>{1, 0, 1, 2}),
+            (std::vector<int>{1, 0, 3, -1, -1, -1}));
+}
+
 TEST(Picture, MovesWithoutScript) {
   const World world = grid_world("...\n.#.\n");
   const std::string svg = Picture(world, std::vector<NodeId>{1, 0, 1, 2}, "a", {}).moving_svg();

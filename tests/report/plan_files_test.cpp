@@ -24,15 +24,15 @@ World labelled_world() {
 
 Answer report_of(const World& world, std::vector<NodeId> walk) {
   const Task task(world, walk.front(), 10);
-  Answer report{.world = world, .task = task, .policy = "search", .plan = plan_of_walk(task, std::move(walk))};
-  report.plan.bound = 3;
-  return report;
+  Answer answer{.world = world, .task = task, .policy = "search", .plan = plan_of_walk(task, std::move(walk))};
+  answer.plan.bound = 3;
+  return answer;
 }
 
 class PlanFiles : public ::testing::Test {
  protected:
-  std::string written(const Answer& report, const std::string& name) {
-    write_plan(report, (folder_ / name).string());
+  std::string written(const Answer& answer, const std::string& name) {
+    write_plan(answer, (folder_ / name).string());
     return read_file(folder_ / name);
   }
 
@@ -66,9 +66,9 @@ TEST_F(PlanFiles, GeoJsonHasALineAndThePoints) {
 }
 
 TEST_F(PlanFiles, GraphsHaveTheOrderOfVisits) {
-  const Answer report = report_of(labelled_world(), {0, 1, 0});
-  EXPECT_THAT(written(report, "a.graphml"), HasSubstr("<data key=\"visit_order\">1</data>"));
-  EXPECT_THAT(written(report, "a.dot"),
+  const Answer answer = report_of(labelled_world(), {0, 1, 0});
+  EXPECT_THAT(written(answer, "a.graphml"), HasSubstr("<data key=\"visit_order\">1</data>"));
+  EXPECT_THAT(written(answer, "a.dot"),
               HasSubstr("1 [label=\"7\", pos=\"0,2\", visit_order=\"1\"];\n  2 [label=\"<c>\", pos"));
 }
 
@@ -82,9 +82,9 @@ TEST_F(PlanFiles, RefuseWhatTheyCannotHold) {
 
 TEST_F(PlanFiles, WalksAreReadBack) {
   const World world = labelled_world();
-  const Answer report = report_of(world, {0, 1, 2, 1});
+  const Answer answer = report_of(world, {0, 1, 2, 1});
   for (const char* const name : {"a.csv", "a.json"}) {
-    written(report, name);
+    written(answer, name);
     EXPECT_THAT(read_plan(world, (folder_ / name).string()).plan.walk, ElementsAre(0, 1, 2, 1)) << name;
   }
   const auto read = [&](const std::string& text) {
@@ -95,7 +95,7 @@ TEST_F(PlanFiles, WalksAreReadBack) {
   EXPECT_THAT(read(format_walk(world, std::vector<NodeId>{0, 1, 2})), ElementsAre(0, 1, 2));
   EXPECT_THAT(read("cost,label\n1,7\n2,<c>\n"), ElementsAre(1, 2));
   EXPECT_THAT(read("[0, \"7\", 2]"), ElementsAre(0, 1, 2));
-  EXPECT_THAT(read("# comment\n#0\n7\n"), ElementsAre(1));
+  EXPECT_THAT(read("# comment\n#0\n7\n"), ElementsAre(0, 1));
   EXPECT_THAT(error_of([&] { read(""); }), HasSubstr("the walk is empty"));
   EXPECT_THAT(error_of([&] { read("7\nnowhere\n"); }), HasSubstr("walk:2: node outside the map"));
   EXPECT_THAT(error_of([&] { read("cost,label\n1\n"); }), HasSubstr("walk:2: no node"));
@@ -114,6 +114,28 @@ TEST_F(PlanFiles, AWalkOnOneLineIsReadWhole) {
   EXPECT_EQ(format_walk(world, std::vector<NodeId>{0, 1}), "node\n0\n1\n");
   // Either of two walks, or one and something beside it.
   EXPECT_THAT(error_of([&] { read("0 1 2\n1 2 5\n"); }), HasSubstr("walk:1: several words a line"));
+}
+
+TEST(ReadPlan, TellsNodesFromComments) {
+  const World world("map", Graph::from_edges(2, std::vector<Edge>{{0, 1}}), std::vector<bool>(2), {"#1", "% x"});
+  const auto walk_of = [&](const std::string& text) { return parse_plan(world, text, "walk").plan.walk; };
+  EXPECT_THAT(walk_of("# 1\n#1\n\"% x\"\n%\n"), ElementsAre(0, 1));
+  EXPECT_THAT(walk_of("#0 \"% x\"\n"), ElementsAre(0, 1));
+}
+
+// A number is a node's id, whatever the nodes are called.
+TEST(ReadPlan, TakesNumbersForIds) {
+  const World world("map", Graph::from_edges(2, std::vector<Edge>{{0, 1}}), std::vector<bool>(2), {"#1", "0"});
+  EXPECT_THAT(parse_plan(world, "[1, 0]", "walk").plan.walk, ElementsAre(1, 0));
+  EXPECT_THAT(parse_plan(world, "node\n1\n0\n", "walk").plan.walk, ElementsAre(1, 0));
+}
+
+TEST(ReadPlan, NamesTheFileOfABadTask) {
+  const World world = labelled_world();
+  EXPECT_THAT(error_of([&] { parse_plan(world, R"({"walk": [0], "budget": -5})", "walk"); }),
+              HasSubstr("walk: bad budget"));
+  EXPECT_THAT(error_of([&] { parse_plan(world, R"({"walk": [0], "budget": 1, "end": 2})", "walk"); }),
+              HasSubstr("walk: map: the end cannot be reached within the budget"));
 }
 
 // Whatever a file says of a bound, no walk visits more nodes than there are, or fewer than none.

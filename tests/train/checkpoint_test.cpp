@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "graphdrl/base/note.h"
 #include "graphdrl/nn/paper_network.h"
 #include "train/training.h"
 
@@ -27,14 +28,34 @@ TEST(Checkpoint, OfAnotherVersionOrPresetIsRefusedInOneLine) {
   const std::string layout = std::to_string(kPaperLayout);
   EXPECT_EQ(error_with({{"layout", layout}, {"preset", "paper"}, {"progress", kProgress}}), "");
   EXPECT_THAT(error_with({{"progress", R"({"episode": 3})"}}),
-              HasSubstr("begin anew: expected layout 2, got an older one"));
+              HasSubstr("begin anew: expected layout 3, got an older one"));
   EXPECT_THAT(error_with({{"layout", "99"}, {"preset", "paper"}, {"progress", kProgress}}), HasSubstr("got '99'"));
   // An explorer's of before, which has more arrays.
-  EXPECT_THAT(error_with({{"layout", layout}, {"preset", "explorer"}, {"progress", kProgress}}),
-              HasSubstr("begin anew: expected layout 3, got '2'"));
-  EXPECT_THAT(error_with({{"layout", "3"}, {"preset", "explorer"}, {"progress", kProgress}}),
+  EXPECT_THAT(error_with({{"layout", "2"}, {"preset", "explorer"}, {"progress", kProgress}}),
+              HasSubstr("begin anew: expected layout 4, got '2'"));
+  EXPECT_THAT(error_with({{"layout", "4"}, {"preset", "explorer"}, {"progress", kProgress}}),
               HasSubstr("another preset than config.json's: expected paper, got 'explorer'"));
   EXPECT_THAT(error_with({}), HasSubstr("not a checkpoint"));
+}
+
+// Since its layout there is a checksum: a file without one is damaged, or older, which is said.
+TEST(Checkpoint, WithoutAChecksumIsDamagedOrOlder) {
+  const TemporaryFolder folder;
+  std::vector<std::string> notes;
+  listen_to_notes([&](const std::string& text) { notes.push_back(text); });
+  const auto error_of_layout = [&](const std::string& layout) {
+    const std::string header =
+        nlohmann::json{{"__metadata__", {{"layout", layout}, {"preset", "paper"}, {"progress", kProgress}}}}.dump();
+    const std::uint64_t length = header.size();
+    write_file(folder / "c", std::string(reinterpret_cast<const char*>(&length), sizeof length) + header);
+    return error_of([&] { Checkpoint::read(folder / "c"); });
+  };
+  EXPECT_THAT(error_of_layout("3"), HasSubstr("its checksum is missing"));
+  EXPECT_TRUE(notes.empty());
+  EXPECT_EQ(error_of_layout("2"), "");
+  listen_to_notes({});
+  ASSERT_EQ(notes.size(), 1);
+  EXPECT_THAT(notes[0], HasSubstr("no checksum"));
 }
 
 TEST(Checkpoint, WithBadProgressIsRefused) {
@@ -66,7 +87,7 @@ TEST(Checkpoint, HoldsWhatWasWritten) {
   writer.add("online.", online);
   writer.add("target.", target);
   writer.add(adam);
-  writer.write(folder / "c");
+  write_file(folder / "c", writer.content());
 
   const Checkpoint read = Checkpoint::read(folder / "c");
   EXPECT_EQ(read.progress().done, 3);

@@ -1,5 +1,3 @@
-#include "graphdrl/train/explorer_recipe.h"
-
 #include <gmock/gmock.h>
 
 #include "train/training.h"
@@ -15,7 +13,7 @@ TEST(ExplorerRecipe, RefusesLessonsThatNoWalkHas) {
   constexpr std::int64_t kWild = 0x7f7f7f7f7f7f7f7f;
   for (const char* const name : {"replay.position", "replay.scope", "replay.label_count", "replay.next"}) {
     for (const std::int64_t value : {kWild, std::int64_t{-1}}) {
-      write_file(run.checkpoint(), with_element(whole, name, 0, value));
+      write_file(run.checkpoint(), with_checksum(with_element(whole, name, 0, value)));
       EXPECT_THAT(error_of([&] { Trainer::resume(run); }), ::testing::HasSubstr("are damaged")) << name;
     }
   }

@@ -1,5 +1,3 @@
-#include "graphdrl/train/lesson_arrays.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +5,8 @@
 #include <cmath>
 
 #include "graphdrl/planners/exact.h"
-#include "support.h"
+#include "graphdrl/train/explorer_replay.h"
+#include "train/training.h"
 
 namespace graphdrl {
 namespace {
@@ -42,29 +41,42 @@ TEST(Lessons, OfSmallWorldsAreWorthWhatExactSearchSays) {
   EXPECT_GT(checked, 300);
 }
 
-TEST(LessonArrays, GiveBackTheLessonsOrNone) {
+TEST(ExplorerReplay, GivesBackTheLessonsOfACheckpointOrNone) {
+  const TemporaryFolder folder;
   const LessonOptions options{.worlds = {{"obstacles", 4}, {"tree", 10}}, .teacher_steps = 1};
   Rng rng(1);
   const std::vector<Lesson> lessons = draw_lessons(options, ExplorerParameters(rng), 5);
   ASSERT_GT(lessons.size(), 1u);
-  LessonArrays arrays;
-  for (const Lesson& lesson : lessons) arrays.add(lesson);
+  ExplorerReplay replay(lessons.size());
+  for (const Lesson& lesson : lessons) replay.push(lesson);
+  CheckpointWriter writer(kExplorerPreset);
+  replay.save(writer);
+  writer.add(TrainingProgress{});
+  write_file(folder / "c", writer.content());
   const auto same_bits = [](float one, float other) {  // a label may be not a number
     return std::bit_cast<std::uint32_t>(one) == std::bit_cast<std::uint32_t>(other);
   };
-  const std::vector<Lesson> back = arrays.lessons(options).value();
-  ASSERT_EQ(back.size(), lessons.size());
-  for (std::size_t i = 0; i < back.size(); ++i) {
-    EXPECT_EQ(back[i].at->seed, 5u);
-    EXPECT_EQ(back[i].at, back[0].at) << "one world";
-    EXPECT_EQ(back[i].visited.count(), lessons[i].visited.count());
-    EXPECT_EQ(back[i].position, lessons[i].position);
-    EXPECT_EQ(back[i].spendable, lessons[i].spendable);
-    EXPECT_EQ(back[i].scope, lessons[i].scope);
-    EXPECT_TRUE(std::ranges::equal(back[i].shortfall, lessons[i].shortfall, same_bits));
+  ExplorerReplay restored(lessons.size());
+  restored.restore(Checkpoint::read(folder / "c"), options);
+  ASSERT_EQ(restored.size(), lessons.size());
+  for (std::size_t i = 0; i < lessons.size(); ++i) {
+    const Lesson& back = restored.lesson(i);
+    EXPECT_EQ(back.at->seed, 5u);
+    EXPECT_EQ(back.at, restored.lesson(0).at) << "one world";
+    EXPECT_EQ(back.visited.count(), lessons[i].visited.count());
+    EXPECT_EQ(back.position, lessons[i].position);
+    EXPECT_EQ(back.spendable, lessons[i].spendable);
+    EXPECT_EQ(back.scope, lessons[i].scope);
+    EXPECT_TRUE(std::ranges::equal(back.shortfall, lessons[i].shortfall, same_bits));
   }
-  arrays.label.push_back(0);
-  EXPECT_FALSE(arrays.lessons(options)) << "more labels than first visits";
+  const auto refused = [&](const char* name, std::size_t index, std::int64_t value) {
+    write_file(folder / "bad", with_element(read_file(folder / "c"), name, index, value));
+    return error_of([&] { restored.restore(Checkpoint::read(folder / "bad"), options); });
+  };
+  const std::size_t last = lessons.size() - 1;
+  const std::int64_t labels = std::ssize(lessons[last].shortfall);
+  EXPECT_EQ(refused("replay.label_count", last, labels), "");
+  EXPECT_NE(refused("replay.label_count", last, labels - 1), "") << "more labels than first visits";
 }
 
 }  // namespace

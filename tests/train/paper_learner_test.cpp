@@ -5,23 +5,20 @@
 #include <algorithm>
 #include <numeric>
 
-#include "graphdrl/train/paper_td_target.h"
 #include "train/tiny_world.h"
 
 namespace graphdrl {
 namespace {
 
 TEST(TdTargets, AreWorkedOutByHand) {
-  const std::vector<float> rewards = {1, 2, 3};
-  const std::vector<std::uint8_t> terminal = {0, 0, 1};
+  PaperMinibatch batch;
+  batch.rewards = {1, 2, 3};
+  batch.terminal = {0, 0, 1};
   const std::vector<float> next_q = {1, 5, 2, 0, 7, 1, 7, 3, 9, 9, 9, 9};
   const std::vector<float> chooser = {0, 1, 2, 0, 0, 1, 0, 0, 1, 0, 0, 0};
   // Double DQN: the chooser picks actions 2 and 1; nothing follows a terminal state.
-  const TdBatch batch{.rewards = rewards, .terminal = terminal, .next_q = next_q, .chooser = chooser};
-  EXPECT_EQ(td_targets(batch, 0.5), (std::vector<float>{1 + 0.5f * 2, 2 + 0.5f * 1, 3}));
-  TdBatch dqn = batch;
-  dqn.chooser = next_q;
-  EXPECT_EQ(td_targets(dqn, 0.5), (std::vector<float>{1 + 0.5f * 5, 2 + 0.5f * 7, 3}));
+  EXPECT_EQ(td_targets(batch, next_q, chooser, 0.5), (std::vector<float>{1 + 0.5f * 2, 2 + 0.5f * 1, 3}));
+  EXPECT_EQ(td_targets(batch, next_q, next_q, 0.5), (std::vector<float>{1 + 0.5f * 5, 2 + 0.5f * 7, 3}));
 }
 
 TEST(KeepScale, DropsItsShareAndKeepsTheMean) {

@@ -4,7 +4,7 @@
 
 #include <deque>
 
-#include "graphdrl/train/paper_epsilon.h"
+#include "graphdrl/io/file.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -36,7 +36,7 @@ void save(const PaperReplayBuffer& buffer, const std::filesystem::path& path) {
   CheckpointWriter writer("paper");
   buffer.save(writer);
   writer.add(TrainingProgress{});
-  writer.write(path);
+  write_file(path, writer.content());
 }
 
 TEST(PaperReplayBuffer, IsADequeOfItsCapacityAndSurvivesACheckpoint) {
@@ -81,13 +81,6 @@ TEST(PaperReplayBuffer, RefusesACheckpointThatDoesNotFit) {
   EXPECT_NE(error_of([&] { PaperReplayBuffer(4, 2).restore(file, any); }), "");
   EXPECT_EQ(error_of([&] { PaperReplayBuffer(4, 3).restore(file, any); }), "");
   EXPECT_NE(error_of([&] { PaperReplayBuffer(4, 3).restore(file, [](const Transition&) { return false; }); }), "");
-}
-
-TEST(PaperEpsilon, RunsFromTheFirstEpisodeToTheLast) {
-  EXPECT_DOUBLE_EQ(paper_epsilon(0, 10'000), std::exp(-0.1));
-  EXPECT_DOUBLE_EQ(paper_epsilon(9'999, 10'000), std::exp(-3.0));
-  EXPECT_DOUBLE_EQ(paper_epsilon(1, 3), std::exp(-1.55));
-  EXPECT_DOUBLE_EQ(paper_epsilon(0, 1), std::exp(-0.1));
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST_P(SeedRunsThread, GoOnWhereTheyWereStopped) {
   set_threads(2);
   SeedRuns::start(GetParam(), {1, 2}, folder / "all");
   int sessions = 0;
-  const int questions = GetParam().preset == kPaperPreset ? kShortPaperSteps / 2 : 3;
+  const int questions = GetParam().preset == kPaperPreset ? kShortPaperSteps / 2 : 70;
   // Stopped after so many questions, on whatever thread.
   for (bool finished = false; !finished; ++sessions) {
     std::atomic<int> asked = 0;
@@ -94,7 +94,9 @@ TEST(SeedRuns, BeginWhatIsMissing) {
     options.seed = seed;
     Trainer::start(options, SeedRuns::run_directory_in(folder / "all", seed));
   }
-  std::filesystem::remove(folder / "all" / "seed-3" / "checkpoint.safetensors");
+  for (const char* const file : {"checkpoint.safetensors", "policy.safetensors", "run.json"}) {
+    std::filesystem::remove(folder / "all" / "seed-3" / file);
+  }
   SeedRuns runs = SeedRuns::resume(folder / "all");
   EXPECT_TRUE(runs.trainings().run(kNever, kSilent));
   for (const std::uint64_t seed : {2, 3}) {

@@ -6,7 +6,7 @@
 
 #include "graphdrl/env/episode.h"
 #include "graphdrl/nn/paper_features.h"
-#include "graphdrl/train/paper_minibatch.h"
+#include "graphdrl/train/paper_replay_buffer.h"
 #include "support.h"
 
 namespace graphdrl {

@@ -42,19 +42,20 @@ TEST_P(AnyTraining, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_FALSE(train_in(folder / "other", other).policy == once.policy);
 }
 
-// Stops a training whenever it has asked so often, wherever that is, and resumes it each time.
+// Stops a training whenever it has asked so often, wherever that is, and resumes it each time. An explorer's round asks
+// 31 times; if its 24 walks are not all drawn it begins anew.
 TEST_P(AnyTraining, EndsWithTheSameBytesHoweverOftenItIsInterrupted) {
   const TemporaryFolder folder;
   const Bytes whole = train_in(folder / "whole", GetParam());
-  for (const int questions : {1, 5}) {
+  const bool paper = GetParam().preset == kPaperPreset;
+  for (const int questions : paper ? std::vector{1, 5} : std::vector{26, 40}) {
     const RunDirectory pieces(folder / ("pieces" + std::to_string(questions)));
     Trainer::start(GetParam(), pieces);
     int sessions = 1;
     while (!train(*Trainer::resume(pieces), [asked = 0, questions]() mutable { return asked++ == questions; })) {
       ++sessions;
     }
-    const int rounds_sessions = questions == 1 ? 1 : 0;
-    EXPECT_GT(sessions, GetParam().preset == kPaperPreset ? kShortPaperSteps / (questions + 1) : rounds_sessions);
+    EXPECT_GT(sessions, paper ? kShortPaperSteps / (questions + 1) : 3);
     EXPECT_TRUE(bytes_of(pieces) == whole) << questions;
   }
 }
@@ -65,7 +66,7 @@ TEST_P(AnyTraining, GoesOnFromAnOlderCheckpoint) {
   TrainOptions options = GetParam();
   options.episodes *= 4;  // more than one line of metrics
   const RunDirectory run(folder / "run");
-  const std::int64_t questions = options.preset == kPaperPreset ? 70 : 1;
+  constexpr std::int64_t questions = 70;
   train(*Trainer::start(options, run), [&, asked = 0]() mutable { return asked++ == questions; });
   const std::string old_checkpoint = read_file(run.checkpoint());
   train(*Trainer::resume(run));
@@ -73,6 +74,79 @@ TEST_P(AnyTraining, GoesOnFromAnOlderCheckpoint) {
   write_file(run.checkpoint(), old_checkpoint);
   train(*Trainer::resume(run));
   EXPECT_TRUE(bytes_of(run) == whole);
+}
+
+// Learners whose losses are no numbers from a step on, unless they learn slowly enough.
+class WildLearners final : public LearnerSource {
+ public:
+  explicit WildLearners(double fastest) : fastest_(fastest) {}
+  std::unique_ptr<PaperLearner> make(const std::string& device, const PaperLearnerOptions& options,
+                                     Rng& rng) const override {
+    rates.push_back(options.learning_rate);
+    auto learner = LearnerSource::make(device, options, rng);
+    if (options.learning_rate <= fastest_) return learner;
+    return std::make_unique<Wild>(std::move(learner));
+  }
+
+  mutable std::vector<double> rates;
+
+ private:
+  class Wild final : public PaperLearner {
+   public:
+    explicit Wild(std::unique_ptr<PaperLearner> tame) : tame_(std::move(tame)) {}
+    void q_values(const GraphBatch& graphs, std::span<const float> features, std::span<float> q) override {
+      tame_->q_values(graphs, features, q);
+    }
+    void learn(const PaperMinibatch& minibatch, Rng& rng) override {
+      tame_->learn(minibatch, rng);
+      ++steps_;
+    }
+    std::vector<double> take_losses() override {
+      std::vector<double> losses = tame_->take_losses();
+      if (!losses.empty() && steps_ > 15) losses.back() = NAN;
+      return losses;
+    }
+    PaperState state() const override { return tame_->state(); }
+    void set_state(const PaperState& state) override { tame_->set_state(state); }
+
+   private:
+    std::unique_ptr<PaperLearner> tame_;
+    int steps_ = 0;
+  };
+
+  double fastest_;
+};
+
+TEST(Trainer, StopsWhereALossIsNotFinite) {
+  const TemporaryFolder folder;
+  const RunDirectory run(folder / "run");
+  const WildLearners learners(0);
+  const auto trainer = Trainer::start(short_paper(), run, learners);
+  // Eight transitions fill a batch; the sixteenth learning step is the first one that goes wrong.
+  EXPECT_THAT(error_of([&] { train(*trainer); }),
+              HasSubstr("the loss is not finite at step 24; the last good checkpoint: " + run.checkpoint().string() +
+                        ", of episode 2"));
+  EXPECT_EQ(Checkpoint::read(run.checkpoint()).progress().done, 2);
+}
+
+TEST(Trainer, GoesBackAndLearnsMoreSlowly) {
+  const TemporaryFolder folder;
+  TrainOptions options = short_paper();
+  options.on_nan = kRollback;
+  const RunDirectory run(folder / "run");
+  const WildLearners learners(options.learning_rate / 4);
+  EXPECT_TRUE(train(*Trainer::start(options, run, learners)));
+  const std::vector<double> halved = {1e-3, 5e-4, 2.5e-4};
+  EXPECT_EQ(learners.rates, halved);
+  EXPECT_TRUE(state_of(run).finished());
+  // What was resumed after that learns as slowly.
+  const WildLearners again(0);
+  Trainer::resume(run, again);
+  EXPECT_EQ(again.rates, std::vector<double>{2.5e-4});
+
+  const RunDirectory other(folder / "other");
+  EXPECT_THAT(error_of([&] { train(*Trainer::start(options, other, WildLearners(0))); }),
+              HasSubstr("it was halved 3 times"));
 }
 
 TEST_P(AnyTraining, LeavesTheSameKindOfDirectory) {
@@ -84,46 +158,25 @@ TEST_P(AnyTraining, LeavesTheSameKindOfDirectory) {
     const std::string name = entry.path().filename().string();
     names.insert(name.substr(0, name.find(".tfevents.")));
   }
-  EXPECT_EQ(names, (std::set<std::string>{"checkpoint.safetensors", "config.json", "events.out", "metrics.jsonl",
-                                          "policy.safetensors"}));
+  EXPECT_EQ(names, (std::set<std::string>{"checkpoint.previous.safetensors", "checkpoint.safetensors", "config.json",
+                                          "events.out", "metrics.jsonl", "policy.safetensors", "run.json"}));
   const Safetensors file = Safetensors::read(run.checkpoint());
   for (const char* const name : {"adam.exp_avg", "adam.exp_avg_sq", "adam.step", "random.state", "replay.next"}) {
     EXPECT_EQ(error_of([&] { file.shape_of(name); }), "");
   }
   EXPECT_EQ(file.metadata().at("preset"), GetParam().preset);
-  EXPECT_EQ(file.metadata().at("layout"), GetParam().preset == kPaperPreset ? "2" : "3");
+  EXPECT_EQ(file.metadata().at("layout"), GetParam().preset == kPaperPreset ? "3" : "4");
   EXPECT_THAT(file.metadata().at("progress"), HasSubstr("\"samples\""));
 }
 
-TEST_P(AnyTraining, RefusesADirectoryThatHoldsARunAndDamagedOnes) {
+TEST_P(AnyTraining, RefusesADirectoryThatHoldsARunAndNone) {
   const TemporaryFolder folder;
   const RunDirectory run(folder / "run");
   train(*Trainer::start(GetParam(), run), [asked = 0]() mutable { return asked++ == 1; });
   EXPECT_THAT(error_of([&] { Trainer::start(GetParam(), run); }), HasSubstr("holds a run already"));
   EXPECT_EQ(error_of([&] { Trainer::resume(run); }), "");
-
-  const std::string checkpoint = read_file(run.checkpoint());
-  Rng rng(9);
-  for (int i = 0; i < 10; ++i) {
-    write_file(run.checkpoint(), checkpoint.substr(0, rng.below(static_cast<std::uint32_t>(checkpoint.size()))));
-    EXPECT_THAT(error_of([&] { Trainer::resume(run); }), HasSubstr("checkpoint.safetensors"));
-  }
-  for (int i = 0; i < 60; ++i) {  // damage is an Error, or a run that can go on
-    std::string damaged = checkpoint;
-    const std::size_t range = i % 2 == 0 ? 4'000 : damaged.size();
-    for (int n = 0; n < 4; ++n)
-      damaged[rng.below(static_cast<std::uint32_t>(range))] = static_cast<char>(rng.below(256));
-    write_file(run.checkpoint(), damaged);
-    error_of([&] { Trainer::resume(run); });
-  }
-  write_file(run.checkpoint(), checkpoint);
-  const std::string config = read_file(run.config());
-  write_file(run.config(), "{}");
-  EXPECT_THAT(error_of([&] { Trainer::resume(run); }), HasSubstr("missing key 'preset'"));
-  write_file(run.config(), config.substr(0, config.size() / 2));
-  EXPECT_THAT(error_of([&] { Trainer::resume(run); }), HasSubstr("config.json"));
   EXPECT_NE(error_of([&] { Trainer::resume(RunDirectory(folder / "nothing")); }), "");
-
+  EXPECT_FALSE(std::filesystem::exists(folder / "nothing"));
   write_file(folder / "file", "");
   EXPECT_NE(error_of([&] { Trainer::start(GetParam(), RunDirectory(folder / "file/run")); }), "");
 }
@@ -134,7 +187,7 @@ TEST_P(AnyTraining, RefusesAdamsStateThatNoTrainingHas) {
   Trainer::start(GetParam(), run);
   const std::string whole = read_file(run.checkpoint());
   const auto error_with = [&](const std::string& content) {
-    write_file(run.checkpoint(), content);
+    write_file(run.checkpoint(), with_checksum(content));
     return error_of([&] { Trainer::resume(run); });
   };
   constexpr float kInfinite = std::numeric_limits<float>::infinity();

@@ -9,6 +9,7 @@
 
 #include "graphdrl/io/file.h"
 #include "graphdrl/train/trainer.h"
+#include "safetensors_support.h"
 #include "support.h"
 
 namespace graphdrl {

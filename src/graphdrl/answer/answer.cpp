@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/bound.h"
-#include "graphdrl/planners/local_search.h"
+#include "graphdrl/planners/exact.h"
 
 namespace graphdrl {
 namespace {
@@ -18,20 +18,17 @@ namespace {
 constexpr double kBoundShare = 0.3;
 constexpr double kPlanShare = 0.97;
 
+// Of linear programs for a walk of any origin, as of a search without a deadline.
+constexpr double kCutWork = 1e7;
+constexpr double kBranchWork = 2e6;
+
 PolicySpec spec_of(const PlanRequest& request) {
-  PolicySpec spec = parse_policy(request.policy);
+  const PolicySpec spec = parse_policy(request.policy);
   if (!request.iterations) return spec;
   if (spec.kind != PolicyKind::kSearch) {
     throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(request.policy, 200)});
   }
-  if (*request.iterations < 1 || *request.iterations > kMostIterations) {
-    throw Error({.what = "bad number of iterations",
-                 .expected = fmt::format("1 to {}", kMostIterations),
-                 .got = fmt::format("{}", *request.iterations)});
-  }
-  spec.iterations = *request.iterations;
-  spec.label = fmt::format("search:{}", spec.iterations);
-  return spec;
+  return parse_policy(fmt::format("search:{}", *request.iterations));
 }
 
 int count_unreachable(const World& world, NodeId start) {
@@ -80,16 +77,31 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   return answer;
 }
 
-std::vector<std::string> plan_summary(const Answer& report) {
-  const World& world = report.world;
-  const Plan& plan = report.plan;
+void judge(Answer& answer) {
+  const Task& task = answer.task;
+  Plan& plan = answer.plan;
+  plan.bound = kNoLimit;
+  plan.optimal = false;
+  plan.settle(max_prize(task));
+  if (const auto lp = plan.optimal ? nullptr : make_lp_bound(task, plan.bound)) {
+    lp->cut(plan.prize, {.work = kCutWork});
+    if (!meets(plan.prize, lp->bound())) lp->branch(plan.prize, {.work = kBranchWork});
+    plan.settle(lp->bound());
+  }
+  if (!plan.optimal) plan.settle(exact_prize(task).value_or(kNoLimit));
+  answer.unreachable = count_unreachable(answer.world, task.start());
+}
+
+std::vector<std::string> plan_summary(const Answer& answer) {
+  const World& world = answer.world;
+  const Plan& plan = answer.plan;
   std::string length;
   if (world.has_cells() && world.map()->frame) {
     length = fmt::format(" ({:.4g} {})", plan.cost * world.map()->frame->cell_size, world.unit());
   }
   std::vector<std::string> lines = {fmt::format(
       "visited {} of {} nodes, {:.1f} %, for {}{} of a budget of {}", plan.visited, world.valid_count(),
-      100.0 * plan.visited / world.valid_count(), decimal(plan.cost), length, decimal(report.task.budget()))};
+      100.0 * plan.visited / world.valid_count(), decimal(plan.cost), length, decimal(answer.task.budget()))};
   if (world.has_prizes()) {
     lines.push_back(fmt::format("prize {} of {}, {:.1f} %", decimal(plan.prize), decimal(world.total_prize()),
                                 world.percent_of_all(plan.prize)));
@@ -98,14 +110,14 @@ std::vector<std::string> plan_summary(const Answer& report) {
   if (plan.optimal) {
     lines.push_back(fmt::format("optimal: no walk {}", what));
   } else {
-    const std::string most = world.has_prizes() ? decimal(plan.bound) : fmt::format("{} nodes", report.max_visited());
+    const std::string most = world.has_prizes() ? decimal(plan.bound) : fmt::format("{} nodes", answer.max_visited());
     const double bound_percent = world.percent_of_all(plan.bound);
     lines.push_back(fmt::format("no walk {} than {}, {:.1f} %: the gap is {:.1f} points", what, most, bound_percent,
                                 bound_percent - world.percent_of_all(plan.prize)));
   }
-  if (report.unreachable > 0) {
-    lines.push_back(fmt::format("{} node{} cannot be reached from the start", report.unreachable,
-                                report.unreachable == 1 ? "" : "s"));
+  if (answer.unreachable > 0) {
+    lines.push_back(fmt::format("{} node{} cannot be reached from the start", answer.unreachable,
+                                answer.unreachable == 1 ? "" : "s"));
   }
   return lines;
 }

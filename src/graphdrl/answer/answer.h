@@ -38,7 +38,10 @@ struct PlanRequest {
 // Plans one walk and bounds it, both until the clock passes. Throws Error on a policy that there is not.
 Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock = {});
 
+// Bounds a walk of any origin, as tightly as `search` does without a time limit, and counts what no walk can reach.
+void judge(Answer& answer);
+
 // A few lines, for people: what the walk visits, what it is worth and costs, and the bound.
-std::vector<std::string> plan_summary(const Answer& report);
+std::vector<std::string> plan_summary(const Answer& answer);
 
 }  // namespace graphdrl

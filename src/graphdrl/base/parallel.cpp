@@ -30,34 +30,30 @@ int thread_count = 1;
 std::optional<Pool> pool;  // where thread_count > 1
 thread_local bool within_task = false;
 
-// ThreadSanitizer does not see how libtbb.so orders a loop's begin before its tasks and these before its end. Each
-// order has a mark of its own: with one for both, the end of a task would order the next one behind it and hide their
-// races.
-struct OrderMark {
+// ThreadSanitizer does not see how libtbb.so orders a loop's begin before its tasks and these before its end. These say
+// it: what comes before release(mark) comes before what follows acquire(mark).
 #ifdef __SANITIZE_THREAD__
-  void before() {
-    __tsan_release(this);
-  }
-  void after() {
-    __tsan_acquire(this);
-  }
-  char address = 0;
+void release(void* mark) {
+  __tsan_release(mark);
+}
+void acquire(void* mark) {
+  __tsan_acquire(mark);
+}
 #else
-  static void before() {}
-  static void after() {}
+void release(void*) {}
+void acquire(void*) {}
 #endif
-};
 
 // One call of parallel_for.
 class Loop {
  public:
-  Loop(void (*body)(const void*, int), const void* task) : run_(body), task_(task) { begin_.before(); }
+  explicit Loop(const std::function<void(int)>& task) : task_(task) { release(&begin_); }
 
   void run(int i) {
-    begin_.after();
+    acquire(&begin_);
     within_task = true;
     try {
-      run_(task_, i);
+      task_(i);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failure_ || i < failed_) {
@@ -66,30 +62,24 @@ class Loop {
       }
     }
     within_task = false;
-    end_.before();
+    release(&end_);
   }
 
   // After the last task.
   void finish() {
-    end_.after();
-    acquire_task_count();
+    acquire(&end_);
+    // oneTBB counts the tasks left in a word of the caller's stack, within 4 KB below this loop. The thread that ends
+    // the last task writes it. ThreadSanitizer must see that the caller waited for that, as it uses its stack again.
+    for (int below = 0; below < 4096; below += 8) acquire(reinterpret_cast<char*>(this) - below);
     if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  // oneTBB counts the tasks left in a word of the caller's stack, within 4 KB below this loop. The thread that ends the
-  // last task writes it. ThreadSanitizer must see that the caller waited for that, as it uses its stack again.
-  void acquire_task_count() {
-#ifdef __SANITIZE_THREAD__
-    char* const top = reinterpret_cast<char*>(this);
-    for (int below = 0; below < 4096; below += 8) __tsan_acquire(top - below);
-#endif
-  }
-
-  void (*run_)(const void*, int);
-  const void* task_;
-  OrderMark begin_;
-  OrderMark end_;
+  const std::function<void(int)>& task_;
+  // Each order has a mark of its own: with one for both, the end of a task would order the next one behind it and hide
+  // their races.
+  char begin_ = 0;
+  char end_ = 0;
   std::mutex mutex_;
   std::exception_ptr failure_;
   int failed_ = 0;
@@ -111,14 +101,12 @@ int hardware_threads() {
   return tbb::info::default_concurrency();
 }
 
-namespace detail {
-
-bool in_task() {
-  return within_task;
-}
-
-void run_on_pool(int count, void (*run)(const void* task, int i), const void* task, Schedule schedule) {
-  Loop loop(run, task);
+void parallel_for(int count, const std::function<void(int)>& task, Schedule schedule) {
+  if (thread_count == 1 || count <= 1 || within_task) {
+    for (int i = 0; i < count; ++i) task(i);
+    return;
+  }
+  Loop loop(task);
   const auto run_range = [&](const tbb::blocked_range<int>& range) {
     for (int i = range.begin(); i < range.end(); ++i) loop.run(i);
   };
@@ -132,5 +120,4 @@ void run_on_pool(int count, void (*run)(const void* task, int i), const void* ta
   loop.finish();
 }
 
-}  // namespace detail
 }  // namespace graphdrl

@@ -17,7 +17,8 @@ class Rng {
 
   std::uint64_t next();
   std::uint32_t below(std::uint32_t bound);  // uniform in [0, bound). REQUIRES: bound > 0.
-  double uniform();                          // uniform in [0, 1), 53 bits
+  int index(int count) { return static_cast<int>(below(static_cast<std::uint32_t>(count))); }  // the same of an int
+  double uniform();  // uniform in [0, 1), 53 bits
 
   const State& state() const { return state_; }
 

@@ -11,7 +11,6 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
-#include "graphdrl/env/graph_arrays.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/plan_files.h"
@@ -59,15 +58,6 @@ void require(const void* pointer, const char* what) {
   if (pointer == nullptr) throw Error({.what = std::string(what) + " is NULL"});
 }
 
-NodeId checked(const World& world, std::int32_t node, const char* role) {
-  const bool there = node >= 0 && node < world.node_count();
-  if (there && !world.is_blocked(node)) return node;
-  throw Error({.what = std::string(role) + (there ? " on an obstacle" : " outside the map"),
-               .expected = "a valid node",
-               .got = std::to_string(node),
-               .where = world.name()});
-}
-
 Asked asked_of(const World& world, const graphdrl_task& task) {
   if (task.size < sizeof(graphdrl_task)) {
     throw Error({.what = "bad size of a task", .expected = "graphdrl_task_init()"});
@@ -80,10 +70,10 @@ Asked asked_of(const World& world, const graphdrl_task& task) {
   } else if (!(task.budget < 0)) {
     asked.budget = Budget(task.budget);
   }
-  if (task.start != GRAPHDRL_GIVEN) asked.start = checked(world, task.start, "start");
+  if (task.start != GRAPHDRL_GIVEN) asked.start = checked_node(world, task.start, "start");
   if (task.end == GRAPHDRL_ANYWHERE) asked.end = End::anywhere();
   if (task.end == GRAPHDRL_AT_START) asked.end = End::at_start();
-  if (task.end != GRAPHDRL_GIVEN && !asked.end) asked.end = End::at(checked(world, task.end, "end"));
+  if (task.end != GRAPHDRL_GIVEN && !asked.end) asked.end = End::at(checked_node(world, task.end, "end"));
   return asked;
 }
 
@@ -100,8 +90,8 @@ struct graphdrl_world final : graphdrl::Handle {
 };
 
 struct graphdrl_result final : graphdrl::Handle {
-  explicit graphdrl_result(graphdrl::Answer made) : report(std::move(made)) {}
-  graphdrl::Answer report;
+  explicit graphdrl_result(graphdrl::Answer made) : answer(std::move(made)) {}
+  graphdrl::Answer answer;
   mutable std::once_flag json_made;
   mutable std::string json;
 };
@@ -244,32 +234,32 @@ graphdrl_status graphdrl_upper_bound(const graphdrl_world* world, const graphdrl
 }
 
 const int32_t* graphdrl_result_walk(const graphdrl_result* result, size_t* length) {
-  if (length != nullptr) *length = result != nullptr ? result->report.plan.walk.size() : 0;
-  return result != nullptr ? result->report.plan.walk.data() : nullptr;
+  if (length != nullptr) *length = result != nullptr ? result->answer.plan.walk.size() : 0;
+  return result != nullptr ? result->answer.plan.walk.data() : nullptr;
 }
 
 int32_t graphdrl_result_visited(const graphdrl_result* result) {
-  return result != nullptr ? result->report.plan.visited : 0;
+  return result != nullptr ? result->answer.plan.visited : 0;
 }
 
 double graphdrl_result_prize(const graphdrl_result* result) {
-  return result != nullptr ? result->report.plan.prize : 0;
+  return result != nullptr ? result->answer.plan.prize : 0;
 }
 
 double graphdrl_result_cost(const graphdrl_result* result) {
-  return result != nullptr ? result->report.plan.cost : 0;
+  return result != nullptr ? result->answer.plan.cost : 0;
 }
 
 double graphdrl_result_budget(const graphdrl_result* result) {
-  return result != nullptr ? result->report.task.budget() : 0;
+  return result != nullptr ? result->answer.task.budget() : 0;
 }
 
 double graphdrl_result_bound(const graphdrl_result* result) {
-  return result != nullptr ? result->report.plan.bound : 0;
+  return result != nullptr ? result->answer.plan.bound : 0;
 }
 
 int32_t graphdrl_result_optimal(const graphdrl_result* result) {
-  return result != nullptr && result->report.plan.optimal ? 1 : 0;
+  return result != nullptr && result->answer.plan.optimal ? 1 : 0;
 }
 
 const char* graphdrl_result_json(const graphdrl_result* result) {
@@ -277,7 +267,7 @@ const char* graphdrl_result_json(const graphdrl_result* result) {
   const graphdrl_status made = guarded([&] {
     std::call_once(result->json_made, [&] {
       using Json = nlohmann::ordered_json;
-      result->json = plan_json(result->report).dump(-1, ' ', false, Json::error_handler_t::replace);
+      result->json = plan_json(result->answer).dump(-1, ' ', false, Json::error_handler_t::replace);
     });
   });
   return made == GRAPHDRL_DONE ? result->json.c_str() : "";
@@ -287,7 +277,7 @@ graphdrl_status graphdrl_result_save(const graphdrl_result* result, const char* 
   return guarded([&] {
     require(result, "the result");
     require(path, "the path");
-    check_plan_file(result->report.world, path);
-    write_plan(result->report, path);
+    check_plan_file(result->answer.world, path);
+    write_plan(result->answer, path);
   });
 }

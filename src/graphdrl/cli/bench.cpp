@@ -112,11 +112,8 @@ void add_bench_command(CLI::App& app) {
   command->add_flag("--json", *json, "Print one JSON document");
   command->callback([json] {
     const Json result = run_bench();
-    if (*json) {
-      print_json(result);
-    } else {
-      print_text(format_bench(result));
-    }
+    if (*json) return print_json(result);
+    print_text(format_bench(result));
   });
 }
 

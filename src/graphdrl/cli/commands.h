@@ -1,7 +1,12 @@
-// The subcommands of `graphdrl`, one per source file beside this one. `learners` must outlive the app.
+// The subcommands of `graphdrl`, one per source file beside this one, and `train` as both programs run it. `learners`
+// must outlive the app.
 #pragma once
 
-#include "graphdrl/train/learner_source.h"
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "graphdrl/train/paper_learner.h"
 
 namespace CLI {
 class App;
@@ -21,5 +26,25 @@ void add_report_command(CLI::App& app);
 void add_results_command(CLI::App& app);
 void add_train_command(CLI::App& app, const LearnerSource& learners);
 void add_tune_command(CLI::App& app, const LearnerSource& learners);  // of graphdrl-train, too
+
+// Trains as the arguments after `train` say; gives the exit status.
+int run_train_command(const std::vector<std::string>& arguments, const LearnerSource& learners);
+
+// Makes learners on the CPU. Asked for another device, the program becomes graphdrl-train, called with the program's
+// `arguments`, which has LibTorch and stands beside it, installed or not: signals and the exit status are that
+// program's from then on. REQUIRES: nothing is written yet. Throws Error where graphdrl-train is not there.
+class CpuOrTorchProgram final : public LearnerSource {
+ public:
+  explicit CpuOrTorchProgram(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {}
+  std::unique_ptr<PaperLearner> make(const std::string& device, const PaperLearnerOptions& options,
+                                     Rng& rng) const override;
+  std::vector<std::unique_ptr<LearnerSource>> make_together(const std::string& device, int trainings) const override;
+
+ private:
+  std::vector<std::string> arguments_;
+};
+
+// Shows the table of its options, for manuals and completions.
+void visit_train_options(const std::function<void(const CLI::App&)>& visit);
 
 }  // namespace graphdrl

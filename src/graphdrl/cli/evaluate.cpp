@@ -10,11 +10,10 @@ namespace graphdrl {
 namespace {
 
 struct EvaluateOptions {
-  std::vector<std::string> policies = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
   std::vector<std::string> maps = {"paper"};
   MapOptions reading;
   std::string budget;
-  ComparisonOptions comparison;
+  ComparisonOptions comparison = {.policies = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"}};
   bool json = false;
 };
 
@@ -49,51 +48,41 @@ Json to_json(const Comparison& comparison) {
 
 void evaluate(const EvaluateOptions& options) {
   ComparisonOptions comparison = options.comparison;
-  comparison.policies = options.policies;
   if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
   const Comparison result = compare(load_worlds(options.maps, options.reading), comparison);
-  if (options.json) {
-    print_json(to_json(result));
-  } else {
-    print_text(format_comparison(result));
-  }
+  if (options.json) return print_json(to_json(result));
+  print_text(format_comparison(result));
 }
 
 }  // namespace
 
 void add_evaluate_command(CLI::App& app) {
-  CLI::App* const command =
-      app.add_subcommand("evaluate", "Compare policies on maps: the paper's Table 2 and the optimum");
+  CLI::App& command = *app.add_subcommand("evaluate", "Compare policies on maps: the paper's Table 2 and the optimum");
   const auto options = std::make_shared<EvaluateOptions>();
-  command->add_option("--policy", options->policies, policy_names() + "; may be given again")
+  command.add_option("--policy", options->comparison.policies, policy_names() + "; may be given again")
       ->type_name("P")
       ->capture_default_str();
-  command->add_option("--maps", options->maps, "paper, paper:a to paper:j, a file, or a folder; may be given again")
+  command.add_option("--maps", options->maps, "paper, paper:a to paper:j, a file, or a folder; may be given again")
       ->type_name("M")
       ->capture_default_str();
-  command
-      ->add_option(
-          "--budget", options->budget,
-          "What an episode may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's, else 25")
-      ->check(not_empty())
-      ->type_name("B");
-  command
-      ->add_option("--end", options->comparison.end,
-                   "Where walks must end: anywhere, start, or a node. The default is the file's, else anywhere")
-      ->check(not_empty())
-      ->type_name("E");
+  add_text_option(
+      command, "--budget", options->budget, "B",
+      "What an episode may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's, else "
+      "25");
+  add_text_option(command, "--end", options->comparison.end, "E",
+                  "Where walks must end: anywhere, start, or a node. The default is the file's, else anywhere");
   CLI::Option* const episodes = command
-                                    ->add_option("--episodes", options->comparison.episodes,
-                                                 "Episodes per map, from the file's start, else from random ones")
+                                    .add_option("--episodes", options->comparison.episodes,
+                                                "Episodes per map, from the file's start, else from random ones")
                                     ->type_name("K")
                                     ->capture_default_str();
-  command->add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
+  command.add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
       ->excludes(episodes);
-  add_seed_option(*command, options->comparison.seed, "For the starts and for random policies");
-  command->add_flag("--json", options->json, "Print one JSON document");
-  add_map_options(*command, options->reading);
-  add_threads_option(*command);
-  command->callback([options] { evaluate(*options); });
+  add_seed_option(command, options->comparison.seed, "For the starts and for random policies");
+  command.add_flag("--json", options->json, "Print one JSON document");
+  add_map_options(command, options->reading);
+  add_threads_option(command);
+  command.callback([options] { evaluate(*options); });
 }
 
 }  // namespace graphdrl

@@ -33,17 +33,13 @@ void export_policy(const ExportOptions& options) {
 }  // namespace
 
 void add_export_command(CLI::App& app) {
-  CLI::App* const command =
-      app.add_subcommand("export", "Write a policy's network as an ONNX model, for other runtimes");
+  CLI::App& command = *app.add_subcommand("export", "Write a policy's network as an ONNX model, for other runtimes");
   const auto options = std::make_shared<ExportOptions>();
-  command->add_option("policy", options->policy, "A policy file, or explorer, the one in the program")
+  command.add_option("policy", options->policy, "A policy file, or explorer, the one in the program")
       ->required()
       ->type_name("POLICY");
-  command->add_option("-o,--out", options->out, "The model to write")
-      ->required()
-      ->check(not_empty())
-      ->type_name("FILE.onnx");
-  command->callback([options] { export_policy(*options); });
+  add_text_option(command, "-o,--out", options->out, "FILE.onnx", "The model to write")->required();
+  command.callback([options] { export_policy(*options); });
 }
 
 }  // namespace graphdrl

@@ -1,6 +1,5 @@
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/cli/train_command.h"
 
 // NOLINTNEXTLINE(bugprone-exception-escape): before the arguments are read only memory can run out
 int main(int argc, char** argv) {

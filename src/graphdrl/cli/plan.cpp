@@ -1,13 +1,13 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <memory>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/planners/registry.h"
@@ -31,26 +31,6 @@ struct PlanOptions {
   bool json = false;
 };
 
-// A bar on standard error once a plan takes a while.
-class PlanDisplay {
- public:
-  explicit PlanDisplay(const World& world) : valid_count_(world.valid_count()), display_(stderr, "visited", 0) {}
-  ~PlanDisplay() { display_.finish(); }
-
-  void show(const Progress& progress) {
-    const double elapsed_s = watch_.seconds();
-    if (elapsed_s < kProgressAfterS) return;
-    const std::string bound = progress.bound <= valid_count_ ? fmt::format(", bound {:.0f}", progress.bound) : "";
-    display_.show_line(fmt::format("{} of {} nodes{}  {:.0f} s", progress.visited, valid_count_, bound, elapsed_s),
-                       static_cast<double>(progress.visited) / valid_count_);
-  }
-
- private:
-  Stopwatch watch_;
-  int valid_count_;
-  ProgressDisplay display_;
-};
-
 std::string name_of(const World& world, NodeId node) {
   if (!world.labels().empty()) return fmt::format("{} (node {})", escaped(world.labels()[node]), node);
   if (!world.has_cells()) return fmt::format("node {}", node);
@@ -70,104 +50,87 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
   std::string text = fmt::format("{}, {} from {}", world.name(), answer.policy, name_of(world, walk.front()));
   if (!answer.task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, answer.task.end()));
   for (const std::string& line : plan_summary(answer)) text += '\n' + line;
-  text += fmt::format("\nwalk of {} steps", walk.size() - 1);
-  if (options.walk) return as_comments(text + '\n') + format_walk(world, walk);
-  text += fmt::format(" to {}; --walk prints them\n", name_of(world, walk.back()));
+  text += '\n';
+  const std::string length = fmt::format("walk of {} steps", walk.size() - 1);
+  if (options.walk) return as_comments(text + length + '\n') + format_walk(world, walk);
+  Screen screen = screen_of(stdout);
+  if (!world.has_cells() && std::ssize(walk) <= screen.columns) {
+    std::vector<std::string> names;
+    for (const NodeId node : walk) names.push_back(escaped(node_name(world, node)));
+    const std::string line = fmt::format("{}: {}", length, fmt::join(names, ", "));
+    if (std::ssize(line) <= screen.columns) return text + line + '\n';
+  }
+  text += fmt::format("{} to {}; --walk prints them\n", length, name_of(world, walk.back()));
   if (!world.has_cells()) return text;
   // The picture and the text above it fit the screen, with a line for the prompt.
-  Screen screen = screen_of(stdout);
   screen.lines -= static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 2;
   text += '\n' + draw_walk(world, walk, screen);
   return text;
-}
-
-volatile std::sig_atomic_t plan_signal = 0;
-std::atomic<bool> plan_stopped = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
-
-extern "C" void remember_plan_signal(int signal) {
-  plan_signal = signal;
-  plan_stopped = true;
-}
-
-// The first signal ends the planning, and the best walk so far is printed; the second one ends the program.
-void stop_planning_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = remember_plan_signal;
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
 }
 
 void plan(const PlanOptions& options) {
   const World world = load_one_world(options.map, options.reading);
   const Task task(world, asked_of(world, options.asked));
   for (const std::string& file : options.out) check_plan_file(world, file);
-  stop_planning_on_signals();
-  PlanDisplay display(world);
-  const ProgressListener listener = [&](const Progress& progress) { display.show(progress); };
-  const Answer answer = make_plan(world, task, options.request, Clock(options.time_limit_s, &plan_stopped, &listener));
+  catch_stop_signals();  // the best walk so far is printed
+  ProgressDisplay display("visited", /*first=*/0, kProgressAfterS);
+  const Stopwatch watch;
+  const int valid = world.valid_count();
+  const ProgressListener listener = [&](const Progress& progress) {
+    const std::string bound = progress.bound <= valid ? fmt::format(", bound {:.0f}", progress.bound) : "";
+    display.show_line(fmt::format("{} of {} nodes{}  {:.0f} s", progress.visited, valid, bound, watch.seconds()),
+                      static_cast<double>(progress.visited) / valid);
+  };
+  const Clock clock(options.time_limit_s, &stop_flag(), &listener);
+  const Answer answer = make_plan(world, task, options.request, clock);
+  display.finish();
   for (const std::string& file : options.out) write_plan(answer, file);
   if (options.json) {
     print_json(plan_json(answer));
   } else {
     print_text(format_plan(answer, options));
   }
-  if (plan_signal != 0) throw CLI::RuntimeError(128 + plan_signal);
+  if (stop_signal() != 0) throw CLI::RuntimeError(128 + stop_signal());
 }
 
 }  // namespace
 
 void add_plan_command(CLI::App& app) {
-  CLI::App* const command =
-      app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
+  CLI::App& command = *app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
   command
-      ->add_option("map", options->map, "paper:a to paper:j, or a file in any format of `graphdrl maps convert --help`")
+      .add_option("map", options->map, "paper:a to paper:j, or a file in any format of `graphdrl maps convert --help`")
       ->required()
       ->type_name("MAP");
+  add_text_option(command, "--budget", options->asked.budget, "B",
+                  "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's");
+  add_text_option(
+      command, "--start", options->asked.start, "S",
+      "A node id, or row,col on a grid; in a graph with labels a label, or #N for node id N. The default is "
+      "the file's, else the first valid node");
+  add_text_option(command, "--end", options->asked.end, "E",
+                  "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, else "
+                  "anywhere");
+  command.add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
   command
-      ->add_option("--budget", options->asked.budget,
-                   "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's")
-      ->check(not_empty())
-      ->type_name("B");
-  command
-      ->add_option(
-          "--start", options->asked.start,
-          "A node id, or row,col on a grid; in a graph with labels a label, or #N for node id N. The default is the "
-          "file's, else the first valid node")
-      ->check(not_empty())
-      ->type_name("S");
-  command
-      ->add_option("--end", options->asked.end,
-                   "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, "
-                   "else anywhere")
-      ->check(not_empty())
-      ->type_name("E");
-  command->add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
-  command
-      ->add_option("--iterations", options->request.iterations,
-                   "Of search: how many steps to take in all; the default depends on the size of the world")
+      .add_option("--iterations", options->request.iterations,
+                  "Of search: how many steps to take in all; the default depends on the size of the world")
       ->type_name("N");
   command
-      ->add_option("--time-limit", options->time_limit_s,
-                   "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, "
-                   "others stop "
-                   "with what they have")
+      .add_option("--time-limit", options->time_limit_s,
+                  "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, "
+                  "others stop with what they have")
       ->type_name("S");
-  command
-      ->add_option("--out", options->out,
-                   "Also write the plan to this file, in the format of its ending: " + plan_file_endings() +
-                       "; may be given again")
-      ->check(not_empty())
-      ->type_name("FILE");
-  add_seed_option(*command, options->request.seed, "For search and for random policies");
-  auto* const json = command->add_flag("--json", options->json, "Print one JSON document");
-  command->add_flag("--walk", options->walk, "Print the walk instead of a picture, a node a line, as `check` reads it")
+  add_text_option(
+      command, "--out", options->out, "FILE",
+      "Also write the plan to this file, in the format of its ending: " + plan_file_endings() + "; may be given again");
+  add_seed_option(command, options->request.seed, "For search and for random policies");
+  CLI::Option* const json = command.add_flag("--json", options->json, "Print one JSON document");
+  command.add_flag("--walk", options->walk, "Print the walk instead of a picture, a node a line, as `check` reads it")
       ->excludes(json);
-  add_map_options(*command, options->reading);
-  add_threads_option(*command);
-  command->callback([options] { plan(*options); });
+  add_map_options(command, options->reading);
+  add_threads_option(command);
+  command.callback([options] { plan(*options); });
 }
 
 }  // namespace graphdrl

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <limits>
@@ -15,6 +14,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/note.h"
 #include "graphdrl/base/parallel.h"
+#include "graphdrl/io/text.h"
 #include "graphdrl/report/progress.h"
 
 namespace graphdrl {
@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kLongestMessage = 800;  // characters: messages of CLI11 repeat a bad line, long or short
 constexpr int kJsonIndent = 2;
+constexpr double kQuietS = 1;  // before a bar shows how much of a map is read
 
 int complain(const CLI::App& app, std::string_view message, int status) {
   message = message.substr(0, message.find('\n'));
@@ -59,27 +60,6 @@ void append_json(const Json& json, int indent, std::string& text) {
   start_line(indent);
   text += json.is_object() ? '}' : ']';
 }
-
-// A bar on standard error for work that takes longer than a second.
-class WorkBar {
- public:
-  void show(double share) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!begin_) begin_ = now;
-    if (share < 1 && now - *begin_ > std::chrono::seconds(1)) {
-      if (!display_) display_.emplace(stderr, "reading", 0);
-      display_->show_line(fmt::format("{:.0f} %", 100 * share), share);
-    }
-    if (share < 1) return;
-    if (display_) display_->finish();
-    display_.reset();
-    begin_.reset();
-  }
-
- private:
-  std::optional<std::chrono::steady_clock::time_point> begin_;
-  std::optional<ProgressDisplay> display_;
-};
 
 // Runs the command asked for, or prints the help or the version that is.
 void parse(CLI::App& app, int argc, char** argv) {
@@ -134,47 +114,44 @@ void add_threads_option(CLI::App& command) {
 
 void add_map_options(CLI::App& command, MapOptions& options) {
   options.note = [](const std::string& note) { print_diagnostic(escaped(note) + "\n"); };
-  options.progress = [bar = std::make_shared<WorkBar>()](double share) { bar->show(share); };
-  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
-    return command.add_option(name, value, help)->group("Options for maps");
+  options.progress = [display = std::make_shared<std::optional<ProgressDisplay>>()](double share) {
+    if (share >= 1) return display->reset();
+    if (!*display) display->emplace("reading", /*first=*/0, kQuietS);
+    (*display)->show_line(fmt::format("{:.0f} %", 100 * share), share);
   };
   const auto positive = [](const std::string& text) {
-    double value = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool good = error == std::errc() && rest == text.data() + text.size() && value > 0 && value < 1e9;
-    return good ? std::string() : fmt::format("expected a number above 0, got {}", in_quotes(text));
+    const double value = parse_number(text).value_or(0);
+    return value > 0 && value < 1e9 ? "" : fmt::format("expected a number above 0, got {}", in_quotes(text));
   };
-  add("--cost-attribute", options.cost_attribute,
-      "Of graphs: the edges' attribute that is their cost; none: each costs 1 (default: weight, cost, length or "
-      "distance)")
-      ->check(not_empty())
-      ->type_name("NAME");
-  add("--prize-attribute", options.prize_attribute,
-      "Of graphs: the nodes' attribute that is their prize; none: each is worth 1 (default: prize or score)")
-      ->check(not_empty())
-      ->type_name("NAME");
-  command.add_flag("--directed", options.directed, "Of edge lists and TGF, which do not say it: edges lead one way")
-      ->group("Options for maps");
+  command.option_defaults()->group("Options for maps");
+  add_text_option(command, "--cost-attribute", options.cost_attribute, "NAME",
+                  "Of graphs: the edges' attribute that is their cost; none: each costs 1 (default: weight, cost, "
+                  "length or distance)");
+  add_text_option(command, "--prize-attribute", options.prize_attribute, "NAME",
+                  "Of graphs: the nodes' attribute that is their prize; none: each is worth 1 (default: prize or "
+                  "score)");
+  command.add_flag("--directed", options.directed, "Of edge lists and TGF, which do not say it: edges lead one way");
   command
       .add_option_function<std::string>(
           "--connectivity", [&options](const std::string& count) { options.diagonals = count == "8"; },
           "Of grids: neighbours of a cell, 4 or 8; a diagonal step costs the square root of 2 (default: 4)")
       ->check(CLI::IsMember({"4", "8"}))
-      ->type_name("N")
-      ->group("Options for maps");
+      ->type_name("N");
   command
       .add_flag("--cut-corners", options.cut_corners, "With --connectivity 8: diagonal steps may pass blocked cells")
-      ->needs("--connectivity")
-      ->group("Options for maps");
-  add("--robot-radius", options.robot_radius,
-      "Of grids: obstacles grow by this, in the map's unit, or in cells where it has none")
+      ->needs("--connectivity");
+  command
+      .add_option("--robot-radius", options.robot_radius,
+                  "Of grids: obstacles grow by this, in the map's unit, or in cells where it has none")
       ->check(CLI::Validator(positive, ""))
       ->type_name("R");
-  add("--cell-size", options.cell_size,
-      "Of grids that say how large their cells are: larger cells, free where all they cover is; a side, in the unit")
+  command
+      .add_option("--cell-size", options.cell_size,
+                  "Of grids that say how large their cells are: larger cells, free where all they cover is; a side, in "
+                  "the unit")
       ->check(CLI::Validator(positive, ""))
       ->type_name("S");
-  add("--cell-pixels", options.cell_pixels, "Of pictures: pixels a side of a cell")
+  command.add_option("--cell-pixels", options.cell_pixels, "Of pictures: pixels a side of a cell")
       ->check(CLI::Range(1, 10'000))
       ->type_name("N")
       ->capture_default_str();
@@ -183,8 +160,8 @@ void add_map_options(CLI::App& command, MapOptions& options) {
           "--unknown", [&options](const std::string& what) { options.unknown_is_free = what == "free"; },
           "Of ROS maps: what unknown cells are, blocked or free (default: blocked)")
       ->check(CLI::IsMember({"blocked", "free"}))
-      ->type_name("WHAT")
-      ->group("Options for maps");
+      ->type_name("WHAT");
+  command.option_defaults()->group("Options");
 }
 
 CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
@@ -204,8 +181,7 @@ CLI::Validator whole_number() {
 }
 
 CLI::Validator not_empty() {
-  return CLI::Validator([](std::string& text) { return std::string(text.empty() ? "expected a value, got ''" : ""); },
-                        "");
+  return {[](const std::string& text) { return std::string(text.empty() ? "expected a value, got ''" : ""); }, ""};
 }
 
 void print_diagnostic(const std::string& text) {
@@ -219,14 +195,10 @@ void print_text(const std::string& text) {
   }
 }
 
-std::string format_json(const Json& json) {
+void print_json(const Json& json) {
   std::string text;
   append_json(json, 0, text);
-  return text + '\n';
-}
-
-void print_json(const Json& json) {
-  print_text(format_json(json));
+  print_text(text + '\n');
 }
 
 }  // namespace graphdrl

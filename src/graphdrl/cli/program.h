@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "graphdrl/io/map_options.h"
+#include "graphdrl/io/any_map.h"
 
 namespace graphdrl {
 
@@ -22,11 +22,22 @@ inline constexpr int kExitClosedPipe = 141;  // as a shell says of a program tha
 // and an exit status.
 int run_program(CLI::App& app, int argc, char** argv);
 
+// Refuses an empty text.
+CLI::Validator not_empty();
+
 // Adds --threads and has parallel_for use that many; the default is one per processor.
 void add_threads_option(CLI::App& command);
 
 // Adds the options that say how maps are read; notes go to standard error.
 void add_map_options(CLI::App& command, MapOptions& options);
+
+// Adds an option or an argument that takes a text, called `type` in help, and refuses an empty one, such as that of an
+// unset variable.
+template <typename T>
+CLI::Option* add_text_option(CLI::App& command, const std::string& names, T& value, const std::string& type,
+                             const std::string& help) {
+  return command.add_option(names, value, help)->check(not_empty())->type_name(type);
+}
 
 // Adds --seed, a whole number from 0 to 2^64 - 1; `help` says what it is for.
 CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help);
@@ -34,13 +45,8 @@ CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::
 // Accepts whole numbers from 0 to 2^64 - 1.
 CLI::Validator whole_number();
 
-// Refuses an empty text, such as that of an unset variable.
-CLI::Validator not_empty();
-
-// A document over several lines. Arrays of numbers, and arrays of such arrays, take one line each.
-std::string format_json(const Json& json);
-
-// One JSON document on standard output.
+// One JSON document on standard output, over several lines. Arrays of numbers, and arrays of such arrays, take one line
+// each.
 void print_json(const Json& json);
 
 // Text on standard error; lost if that is closed.

@@ -33,20 +33,6 @@ struct ReportOptions {
   int port = 8000;
 };
 
-// What a page calls its runs and evaluations: the last part of the path, or the whole path if that name is taken.
-class Names {
- public:
-  std::string name(const std::string& path) {
-    const std::filesystem::path given(path);
-    const std::filesystem::path last = given.has_filename() ? given.filename() : given.parent_path().filename();
-    const std::string shortest = last.stem().string();
-    return taken_.insert(shortest).second ? shortest : path;
-  }
-
- private:
-  std::set<std::string> taken_;
-};
-
 // Evaluations and plans are told apart by their content.
 std::optional<nlohmann::json> read_evaluation(const std::string& file) {
   const std::string text = read_file(file);
@@ -56,13 +42,19 @@ std::optional<nlohmann::json> read_evaluation(const std::string& file) {
   return document;
 }
 
-void fill(ReportPage& page, const ReportOptions& options, const std::optional<World>& world) {
-  Names names;
+// page: one with nothing on it yet.
+ReportPage make_page(const ReportOptions& options, const std::optional<World>& world, ReportPage page) {
+  std::set<std::string> taken;
+  // What the page calls a run or an evaluation: the last part of the path, or the whole path if that name is taken.
+  const auto name_of = [&](const std::filesystem::path& path) {
+    const std::filesystem::path last = path.has_filename() ? path.filename() : path.parent_path().filename();
+    return taken.insert(last.stem().string()).second ? last.stem().string() : path.string();
+  };
   for (const std::string& input : options.inputs) {
     if (std::filesystem::is_directory(input)) {
-      page.add_run(names.name(input), input);
+      page.add_run(name_of(input), input);
     } else if (const auto evaluation = read_evaluation(input)) {
-      page.add_evaluation(names.name(input), *evaluation);
+      page.add_evaluation(name_of(input), *evaluation);
     } else if (world) {
       const Answer plan = read_plan(*world, input);
       check_walk(plan, input);
@@ -71,6 +63,7 @@ void fill(ReportPage& page, const ReportOptions& options, const std::optional<Wo
       throw Error({.what = "a plan needs its map", .expected = "--map MAP", .where = input});
     }
   }
+  return page;
 }
 
 // What changes when a file does: all zero where there is none. Nanoseconds, since 1970.
@@ -94,7 +87,7 @@ class WatchedPage {
   using Text = std::shared_ptr<const std::string>;
 
   WatchedPage(const ReportOptions& options, const std::optional<World>& world)
-      : options_(options), world_(world), page_(options.title, options.watch) {}
+      : options_(options), world_(world), page_(options.title, /*watch=*/true) {}
 
   // Both throw Error where an input cannot be read.
   Text html() {
@@ -138,9 +131,8 @@ class WatchedPage {
     html_.reset();
     data_.reset();
     failure_ = nullptr;
-    page_.clear();
     try {
-      fill(page_, options_, world_);
+      page_ = make_page(options_, world_, page_.emptied());
     } catch (const Error&) {
       failure_ = std::current_exception();
     }
@@ -188,46 +180,35 @@ void report(const ReportOptions& options) {
   if (options.watch) {
     serve(options, world);
   } else {
-    ReportPage page(options.title);
-    fill(page, options, world);
-    write_file(options.out, page.html());
+    write_file(options.out, make_page(options, world, ReportPage(options.title)).html());
   }
 }
 
 }  // namespace
 
 void add_report_command(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand(
+  CLI::App& command = *app.add_subcommand(
       "report", "Make a page of plans, trainings and evaluations: replays, curves, tables, in one HTML file");
   const auto options = std::make_shared<ReportOptions>();
   command
-      ->add_option(
-          "inputs", options->inputs,
-          "Plans that `plan --out` wrote (JSON or CSV), folders of `train`, and what `evaluate --json` printed")
+      .add_option("inputs", options->inputs,
+                  "Plans that `plan --out` wrote (JSON or CSV), folders of `train`, and what `evaluate --json` printed")
       ->required()
       ->type_name("INPUTS");
-  command->add_option("-o,--out", options->out, "The page to write")->check(not_empty())->type_name("FILE");
-  command->add_option("--map", options->map, "The map of the plans: paper:a to paper:j, or a file")
-      ->check(not_empty())
-      ->type_name("MAP");
-  command
-      ->add_option("--scores", options->scores,
-                   "Show what this policy thinks of the possible moves at every step of the plans: explorer, or a "
-                   "policy file")
-      ->check(not_empty())
-      ->type_name("POLICY");
-  command->add_option("--title", options->title, "The title of the page")
-      ->check(not_empty())
-      ->type_name("TEXT")
-      ->capture_default_str();
-  command->add_flag("--watch", options->watch,
-                    "Instead of writing a file, serve the page on 127.0.0.1 and keep it up to date");
-  command->add_option("--port", options->port, "Where to serve it; 0 takes any free port")
+  add_text_option(command, "-o,--out", options->out, "FILE", "The page to write");
+  add_text_option(command, "--map", options->map, "MAP", "The map of the plans: paper:a to paper:j, or a file");
+  add_text_option(command, "--scores", options->scores, "POLICY",
+                  "Show what this policy thinks of the possible moves at every step of the plans: explorer, or a "
+                  "policy file");
+  add_text_option(command, "--title", options->title, "TEXT", "The title of the page")->capture_default_str();
+  command.add_flag("--watch", options->watch,
+                   "Instead of writing a file, serve the page on 127.0.0.1 and keep it up to date");
+  command.add_option("--port", options->port, "Where to serve it; 0 takes any free port")
       ->type_name("N")
       ->capture_default_str();
-  add_map_options(*command, options->reading);
-  add_threads_option(*command);
-  command->callback([options] { report(*options); });
+  add_map_options(command, options->reading);
+  add_threads_option(command);
+  command.callback([options] { report(*options); });
 }
 
 }  // namespace graphdrl

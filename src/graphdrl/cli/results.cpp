@@ -134,28 +134,22 @@ void results(const ResultsOptions& options) {
 }  // namespace
 
 void add_results_command(CLI::App& app) {
-  CLI::App* const command = app.add_subcommand(
+  CLI::App& command = *app.add_subcommand(
       "results",
       "Compare trainings that differ in their seeds alone: the paper's Table 2 as a distribution, its curves");
   const auto options = std::make_shared<ResultsOptions>();
-  command->add_option("runs", options->runs, "Run directories that are finished, and folders of many seeds")
+  command.add_option("runs", options->runs, "Run directories that are finished, and folders of many seeds")
       ->required()
       ->type_name("RUN");
-  command->add_option("--maps", options->maps, "Maps to compare on")->type_name("MAP")->capture_default_str();
-  command
-      ->add_option("--figure", options->figure,
-                   "Draw the curves of Figure 2, with a band from the lowest to the highest seed: .svg, .png")
-      ->check(not_empty())
-      ->type_name("FILE");
-  command
-      ->add_option(
-          "--into", options->into,
-          "Put the table, in Markdown, between the lines <!-- table --> and <!-- end of table --> of this file")
-      ->check(not_empty())
-      ->type_name("FILE.md");
-  command->add_flag("--json", options->json, "Print one JSON document");
-  add_threads_option(*command);
-  command->callback([options] { results(*options); });
+  command.add_option("--maps", options->maps, "Maps to compare on")->type_name("MAP")->capture_default_str();
+  add_text_option(command, "--figure", options->figure, "FILE",
+                  "Draw the curves of Figure 2, with a band from the lowest to the highest seed: .svg, .png");
+  add_text_option(
+      command, "--into", options->into, "FILE.md",
+      "Put the table, in Markdown, between the lines <!-- table --> and <!-- end of table --> of this file");
+  command.add_flag("--json", options->json, "Print one JSON document");
+  add_threads_option(command);
+  command.callback([options] { results(*options); });
 }
 
 }  // namespace graphdrl

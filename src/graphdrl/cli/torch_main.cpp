@@ -4,7 +4,6 @@
 
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/cli/train_command.h"
 #include "graphdrl/train/torch/paper_stack.h"
 
 // NOLINTNEXTLINE(bugprone-exception-escape): before the arguments are read only memory can run out

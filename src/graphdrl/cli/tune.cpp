@@ -6,7 +6,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/cli/train_command.h"
+#include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/tuning.h"
 
@@ -18,6 +18,7 @@ struct TuneCommand {
   TuneOptions options;
   std::string out = "runs/tune";
   std::string resume;
+  bool break_lock = false;
   bool json = false;
 };
 
@@ -66,19 +67,18 @@ std::string to_text(const Tuning& tuning) {
         round + 1, tuning.options().rounds[round].seeds, tuning.options().episodes);
     for (const SettingScore& score : tuning.scores()[round]) {
       const auto& errors = score.over_paper_errors;
-      text += fmt::format("{:6.1f} {:>6}  {:>+6.1f} {:>7}  {:02} {}\n", score.over_seeds.mean,
-                          score.over_seeds.std ? fmt::format("{:.1f}", *score.over_seeds.std) : "–", score.over_paper,
-                          errors ? fmt::format("({:+.1f})", *errors) : "", score.setting,
-                          name_of(tuning.settings()[score.setting]));
+      text +=
+          fmt::format("{:6.1f} {:>6}  {:>+6.1f} {:>7}  {:02} {}\n", score.over_seeds.mean,
+                      or_dash(score.over_seeds.std), score.over_paper, errors ? fmt::format("({:+.1f})", *errors) : "",
+                      score.setting, name_of(tuning.settings()[score.setting]));
     }
     text += '\n';
   }
   text += "Means over the settings of round 1 that share a value\n\n  mean    std  settings\n";
   for (const ValueEffect& effect : tuning.effects()) {
     const Summary& summary = effect.over_settings;
-    text += fmt::format("{:6.1f} {:>6} {:>9}  {} {}\n", summary.mean,
-                        summary.std ? fmt::format("{:.1f}", *summary.std) : "–", summary.count, effect.option,
-                        effect.value);
+    text += fmt::format("{:6.1f} {:>6} {:>9}  {} {}\n", summary.mean, or_dash(summary.std), summary.count,
+                        effect.option, effect.value);
   }
   return text;
 }
@@ -86,11 +86,12 @@ std::string to_text(const Tuning& tuning) {
 void tune(TuneCommand command, const LearnerSource& learners) {
   command.options.rounds = parse_rounds(command.rounds);
   const std::string folder = command.resume.empty() ? command.out : command.resume;
+  if (command.break_lock) break_locks(folder);
   Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder, learners) : Tuning::resume(folder);
-  catch_training_signals();
-  ProgressDisplay display(stderr, "round", 0);
+  catch_stop_signals();
+  ProgressDisplay display("round");
   const bool finished = tuning.run(
-      [] { return training_signal() != 0; },
+      [] { return stop_flag().load(); },
       [&](std::size_t round, const SideBySideNews& news) {
         const std::string line = fmt::format("{}/{}  {} runs done  {:.0f} steps/s", round + 1,
                                              tuning.options().rounds.size(), news.runs_done, news.samples_per_s);
@@ -100,7 +101,7 @@ void tune(TuneCommand command, const LearnerSource& learners) {
   display.finish();
   if (!finished) {
     print_diagnostic(fmt::format("Stopped; everything is saved. To go on:\n  graphdrl tune --resume {}\n", folder));
-    throw CLI::RuntimeError(128 + training_signal());
+    throw CLI::RuntimeError(128 + stop_signal());
   }
   if (command.json) return print_json(to_json(tuning));
   print_text(to_text(tuning));
@@ -109,53 +110,41 @@ void tune(TuneCommand command, const LearnerSource& learners) {
 }  // namespace
 
 void add_tune_command(CLI::App& app, const LearnerSource& learners) {
-  CLI::App* const command = app.add_subcommand(
+  CLI::App& command = *app.add_subcommand(
       "tune",
       "Search for better hyper-parameters of the paper's training, by successive halving over settings and seeds");
   const auto options = std::make_shared<TuneCommand>();
-  CLI::Option* const rounds =
-      command
-          ->add_option("--rounds", options->rounds,
-                       "Settings by seeds of each round; the best go on, beside the paper's, with fresh seeds")
-          ->type_name("ROUNDS")
-          ->capture_default_str();
-  CLI::Option* const episodes =
-      command->add_option("--episodes", options->options.episodes, "Episodes of each training")->capture_default_str();
-  CLI::Option* const train_maps =
-      command
-          ->add_option("--train-maps", options->options.train_maps,
-                       "Random maps of 5x5 cells, for settings that train on many instead of the paper's one")
-          ->check(CLI::Range(1, 10'000))
-          ->capture_default_str();
-  CLI::Option* const validation_maps =
-      command
-          ->add_option("--validation-maps", options->options.validation_maps,
-                       "Random maps of 5x5 cells to compare on, none of them the paper's or to train on")
-          ->check(CLI::Range(1, 10'000))
-          ->capture_default_str();
-  CLI::Option* const seed = add_seed_option(*command, options->options.seed, "Of the settings and the trainings");
-  CLI::Option* const device = command
-                                  ->add_option("--device", options->options.device,
-                                               "cpu or cuda, as of train; cuda trains the seeds of a setting together")
-                                  ->check(CLI::IsMember({"cpu", "cuda"}))
-                                  ->capture_default_str();
-  CLI::Option* const out = command->add_option("--out", options->out, "The folder of the search, new")
-                               ->check(not_empty())
-                               ->type_name("FOLDER")
-                               ->capture_default_str();
-  command->add_option("--resume", options->resume, "Go on with a search; takes none of the options above")
-      ->check(not_empty())
-      ->type_name("FOLDER")
-      ->excludes(rounds)
-      ->excludes(episodes)
-      ->excludes(train_maps)
-      ->excludes(validation_maps)
-      ->excludes(seed)
-      ->excludes(device)
-      ->excludes(out);
-  command->add_flag("--json", options->json, "Print one JSON document");
-  add_threads_option(*command);
-  command->callback([options, &learners] { tune(*options, learners); });
+  TuneOptions& tuning = options->options;
+  command
+      .add_option("--rounds", options->rounds,
+                  "Settings by seeds of each round; the best go on, beside the paper's, with fresh seeds")
+      ->type_name("ROUNDS")
+      ->capture_default_str();
+  command.add_option("--episodes", tuning.episodes, "Episodes of each training")->capture_default_str();
+  const auto add_maps = [&](const std::string& name, auto& count, const std::string& purpose) {
+    command.add_option(name, count, "Random maps of 5x5 cells" + purpose)
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
+  };
+  add_maps("--train-maps", tuning.train_maps, ", for settings that train on many instead of the paper's one");
+  add_maps("--validation-maps", tuning.validation_maps, " to compare on, none of them the paper's or to train on");
+  add_seed_option(command, tuning.seed, "Of the settings and the trainings");
+  command
+      .add_option("--device", tuning.device, "cpu or cuda, as of train; cuda trains the seeds of a setting together")
+      ->check(CLI::IsMember({"cpu", "cuda"}))
+      ->capture_default_str();
+  add_text_option(command, "--out", options->out, "FOLDER", "The folder of the search, new")->capture_default_str();
+  const auto above = command.get_options([](CLI::Option* option) { return option->get_name() != "--help"; });
+  CLI::Option* const resume = add_text_option(command, "--resume", options->resume, "FOLDER",
+                                              "Go on with a search; takes none of the options above");
+  for (CLI::Option* const option : above) resume->excludes(option);
+  command
+      .add_flag("--break-lock", options->break_lock,
+                "With --resume: go on at once though a trainer on another host held a run in the last minute")
+      ->needs(resume);
+  command.add_flag("--json", options->json, "Print one JSON document");
+  add_threads_option(command);
+  command.callback([options, &learners] { tune(*options, learners); });
 }
 
 }  // namespace graphdrl

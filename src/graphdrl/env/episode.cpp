@@ -1,10 +1,22 @@
 #include "graphdrl/env/episode.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
 
 namespace graphdrl {
+namespace {
+
+// A start from which the end is in reach: the end itself.
+NodeId any_start(const World& world, const End& end) {
+  const NodeId start = world.valid_nodes().front();
+  const NodeId at = end.of(start);
+  return at >= 0 && at < world.node_count() && !world.is_blocked(at) ? at : start;
+}
+
+}  // namespace
 
 Episode::Episode(const World& world, const Task& task, const EpisodeOptions& options)
     : world_(world),
@@ -18,17 +30,6 @@ Episode::Episode(const World& world, const Task& task, const EpisodeOptions& opt
   }
   reset(task.start());
 }
-
-namespace {
-
-// A start from which the end is in reach: the end itself.
-NodeId any_start(const World& world, const End& end) {
-  const NodeId start = world.valid_nodes().front();
-  const NodeId at = end.of(start);
-  return at >= 0 && at < world.node_count() && !world.is_blocked(at) ? at : start;
-}
-
-}  // namespace
 
 Episode::Episode(const World& world, const EpisodeOptions& options)
     : Episode(world, Task(world, any_start(world, options.end), options.budget, options.end), options) {}
@@ -105,6 +106,30 @@ Observation Episode::observation() const {
           .visited_count = visited_count_,
           .spent = spent_,
           .spendable = task_.limit() - spent_};
+}
+
+void follow_walk(Episode& episode, std::span<const NodeId> walk,
+                 const std::function<void(const Observation&)>& at_node) {
+  if (walk.empty()) throw Error({.what = "the walk is empty", .expected = "at least a start"});
+  episode.reset(walk.front());
+  if (at_node) at_node(episode.observation());
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    const int action = episode.observation().action_to(walk[i]);
+    if (action == kNoAction) {
+      throw Error({.what = "no such step in the walk",
+                   .expected = fmt::format("a valid neighbour of node {}, or the node again for a blocked move",
+                                           episode.position()),
+                   .got = fmt::format("{} at place {}", walk[i], i),
+                   .where = episode.world().name()});
+    }
+    if (!episode.observation().affordable(action)) {
+      throw Error({.what = "the walk costs more than the budget",
+                   .got = fmt::format("step {} from {} to {}", i, episode.position(), walk[i]),
+                   .where = episode.world().name()});
+    }
+    episode.step(action);
+    if (at_node) at_node(episode.observation());
+  }
 }
 
 }  // namespace graphdrl

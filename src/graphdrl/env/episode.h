@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "graphdrl/env/observation.h"
-#include "graphdrl/env/task.h"
 
 namespace graphdrl {
 
@@ -72,7 +72,7 @@ class Episode {
 
   // Reached full coverage with end_at_full_coverage: nothing follows. A spent budget is no terminal state, only a
   // truncation: eq. 5 bootstraps there.
-  bool terminal() const { return options_.end_at_full_coverage && all_visited(); }
+  bool terminal() const { return options_.end_at_full_coverage && visited_count_ == world_.valid_count(); }
 
   const World& world() const { return world_; }
   const Task& task() const { return task_; }
@@ -87,7 +87,6 @@ class Episode {
   double spent() const { return spent_; }  // units of cost
 
  private:
-  bool all_visited() const { return visited_count_ == world_.valid_count(); }
   StepResult enter(NodeId next, double cost);
   double reward_of(bool blocked, std::uint32_t visits_before) const;
 
@@ -105,5 +104,11 @@ class Episode {
   double spent_ = 0;
   std::int64_t free_moves_ = 0;  // since the last first visit or the last cost
 };
+
+// Leads a fresh episode along a walk of node ids, the start first; a repeated node is a blocked move. Calls `at_node`
+// at every one, the start included. Throws Error where a node is no valid node or not one step from the one before it,
+// or the budget does not last.
+void follow_walk(Episode& episode, std::span<const NodeId> walk,
+                 const std::function<void(const Observation&)>& at_node = {});
 
 }  // namespace graphdrl

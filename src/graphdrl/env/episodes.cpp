@@ -12,10 +12,7 @@ constexpr int kMostEpisodes = 1'000'000;
 }  // namespace
 
 bool EpisodesOptions::is_grid() const {
-  if (world) return world->is_grid();
-  const auto families = world_families();
-  const auto known = std::ranges::find(families, family.family, &WorldFamily::name);
-  return known != families.end() && known->grid;
+  return world ? world->is_grid() : family_of(family).grid;
 }
 
 NodeId EpisodesOptions::most_nodes() const {

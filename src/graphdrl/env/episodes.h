@@ -10,8 +10,8 @@
 
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/base/random.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/episode.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/env/world_families.h"
 
 namespace graphdrl {

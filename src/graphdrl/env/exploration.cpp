@@ -1,6 +1,13 @@
 #include "graphdrl/env/exploration.h"
 
+#include <algorithm>
+
 namespace graphdrl {
+
+int Exploration::new_count() const {
+  if (!task_->claims_beyond_ground()) return view().valid_count() - ground_count_;
+  return static_cast<int>(std::ranges::count_if(view().valid_nodes(), [&](NodeId node) { return is_new(node); }));
+}
 
 FirstVisit Exploration::nearest_first_visit(NearestFirst& search) const {
   FirstVisit nearest;

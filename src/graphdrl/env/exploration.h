@@ -33,6 +33,8 @@ class Exploration {
   int ground_count() const { return ground_count_; }
   // Whether a first visit of the node is still to be made by anybody.
   bool is_new(NodeId node) const { return !ground_.contains(node) && !task_->is_claimed(node); }
+  // How many nodes are. Cost: O(1), or O(N) where others have claimed some.
+  int new_count() const;
   NodeId position() const { return position_; }
   double spendable() const { return spendable_; }  // in units of cost
   // What is left to spend beyond the way to the end.

@@ -28,12 +28,10 @@ float budget_left(const Observation& now) {
 }
 
 int most_neighbours(const EpisodesOptions& options) {
-  if (!options.world) return options.is_grid() ? static_cast<int>(kAllDirections.size()) : options.most_nodes() - 1;
-  std::ptrdiff_t most = 0;
-  for (const NodeId node : options.world->valid_nodes()) {
-    most = std::max(most, std::ssize(options.world->open_neighbours(node)));
-  }
-  return static_cast<int>(most);
+  if (!options.world) return options.is_grid() ? kDirectionCount : options.most_nodes() - 1;
+  int most = 0;
+  for (const NodeId node : options.world->valid_nodes()) most = std::max(most, options.world->open().degree(node));
+  return most;
 }
 
 // The columns of `row` by name.

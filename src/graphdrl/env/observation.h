@@ -38,12 +38,15 @@ struct Observation {
   const View& view() const { return task->view(); }
   bool visited(NodeId node) const { return visits[node] > 0; }
   // The nodes visited.
-  NodeSet ground() const;
+  NodeSet ground() const {
+    NodeSet visited(view().node_count());
+    for (const NodeId node : walk) visited.insert(node);
+    return visited;
+  }
   bool all_visited() const { return visited_count == view().valid_count(); }
 
   int action_count() const {
-    return static_cast<int>(action_space == ActionSpace::kDirections ? kAllDirections.size()
-                                                                     : view().open_neighbours(position).size());
+    return action_space == ActionSpace::kDirections ? kDirectionCount : view().open().degree(position);
   }
 
   // Where an action leads; the current node itself where the move is blocked.
@@ -65,7 +68,13 @@ struct Observation {
   bool legal(int action) const { return target(action) != position && affordable(action); }
 
   // The first action that leads to `next`; for the current node, the first blocked one. kNoAction where there is none.
-  int action_to(NodeId next) const;
+  int action_to(NodeId next) const {
+    if (action_space == ActionSpace::kNeighbours) return view().open().index_of(position, next);
+    for (int action = 0; action < action_count(); ++action) {
+      if (target(action) == next) return action;
+    }
+    return kNoAction;
+  }
 };
 
 // A number of 64 bits for a walk, kept up to date step by step: equal walks have equal ones, and others do not but by

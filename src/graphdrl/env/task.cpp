@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -34,20 +35,46 @@ double budget_of(const World& world, const std::optional<Budget>& asked) {
                .where = world.name()});
 }
 
-NodeId start_of(const World& world, const std::optional<NodeId>& asked) {
-  if (asked) return *asked;
+NodeId start_of(const World& world) {
   return world.given().start == kNoNode ? world.valid_nodes().front() : world.given().start;
 }
 
-End end_of(const World& world, const std::optional<End>& asked) {
-  if (asked) return *asked;
+End end_of(const World& world) {
   return world.given().end == kNoNode ? End::anywhere() : End::at(world.given().end);
 }
 
 }  // namespace
 
+Budget::Budget(double cost) : text_(fmt::format("{}", cost)), value_(std::abs(cost)) {  // -0
+  if (!(cost >= 0)) {
+    throw Error({.what = "bad budget", .expected = "a number from 0 up", .got = fmt::format("{}", cost)});
+  }
+}
+
+Budget Budget::parse(std::string_view text) {
+  std::string_view number = text;
+  const bool relative = number.ends_with('x');
+  if (relative) number.remove_suffix(1);
+  const char* const end = number.data() + number.size();
+  double value = 0;
+  const auto [rest, error] = std::from_chars(number.data(), end, value);
+  if (error != std::errc() || rest != end || !(value >= 0)) {
+    throw Error(
+        {.what = "bad budget", .expected = "a number from 0 up, or a multiple like 1.1x", .got = in_quotes(text)});
+  }
+  Budget budget(value);
+  budget.text_ = text;
+  budget.relative_ = relative;
+  return budget;
+}
+
+double Budget::cost_in(const View& view) const {
+  return relative_ ? std::floor(value_ * view.valid_count() + 1e-9) * view.open().mean_cost() : value_;
+}
+
 Task::Task(const World& world, const Asked& asked)
-    : Task(world, start_of(world, asked.start), budget_of(world, asked.budget), end_of(world, asked.end)) {}
+    : Task(world, asked.start ? *asked.start : start_of(world), budget_of(world, asked.budget),
+           asked.end ? *asked.end : end_of(world)) {}
 
 Task::Task(View view, NodeId start, double budget, End end)
     : view_(std::move(view)),
@@ -64,13 +91,13 @@ Task::Task(View view, NodeId start, double budget, End end)
     check_node(view_, end_, "end");
     to_end_ = std::make_shared<const std::vector<double>>(costs_to(view_.into(), end_));
   }
-  check();
+  check_reach_from(start_);
 }
 
-void Task::check() const {
-  if (cost_to_end(start_) <= limit_) return;
+void Task::check_reach_from(NodeId start) const {
+  if (cost_to_end(start) <= limit_) return;
   throw Error({.what = "the end cannot be reached within the budget",
-               .got = fmt::format("node {} from node {} for {}", end_, start_, budget_),
+               .got = fmt::format("node {} from node {} for {}", end_, start, budget_),
                .where = view_.name()});
 }
 
@@ -84,13 +111,8 @@ void Task::start_at(NodeId start) {
     return;
   }
   check_node(view_, start, "start");
-  const NodeId before = std::exchange(start_, start);
-  try {
-    check();
-  } catch (...) {
-    start_ = before;
-    throw;
-  }
+  check_reach_from(start);
+  start_ = start;
   reach_.forget();
 }
 
@@ -127,21 +149,11 @@ NodeSet Task::ground() const {
   return start;
 }
 
-const Reach& Task::reach() const {
-  return reach_.of(*this);
-}
-
 Task::LazyReach& Task::LazyReach::operator=(const LazyReach& other) {
   if (this == &other) return *this;
-  auto known = other.known();
-  const std::lock_guard lock(mutex_);
-  known_ = std::move(known);
+  const std::scoped_lock lock(mutex_, other.mutex_);
+  known_ = other.known_;
   return *this;
-}
-
-std::shared_ptr<const Reach> Task::LazyReach::known() const {
-  const std::lock_guard lock(mutex_);
-  return known_;
 }
 
 const Reach& Task::LazyReach::of(const Task& task) {

@@ -1,17 +1,40 @@
 // What a planner is asked: where a walk begins, where it must end, and what it may spend.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "graphdrl/env/budget.h"
-#include "graphdrl/env/view.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/graph/node_set.h"
 
 namespace graphdrl {
+
+// The most steps of any walk. A budget may pay for more where edges cost next to nothing; walks stay in memory, so they
+// end here.
+inline constexpr std::int64_t kMaxSteps = 100'000'000;
+
+// "25", in units of cost, or "1.1x": floor(1.1 · n + 1e-9) times the mean cost of an edge in a world of n valid nodes.
+// Where edges have no costs, a unit is a step.
+class Budget {
+ public:
+  // Units of cost. Throws Error on anything but a number from 0 up; infinity is one.
+  explicit Budget(double cost);
+  // The same with or without the x.
+  static Budget parse(std::string_view text);
+
+  double cost_in(const View& view) const;
+  const std::string& text() const { return text_; }  // as it was given
+
+ private:
+  std::string text_;
+  double value_;
+  bool relative_ = false;
+};
 
 // Where a walk must end: anywhere, where it started, or at a node.
 class End {
@@ -84,31 +107,33 @@ class Task {
   int ground_count() const { return ground_.empty() ? 1 : ground_.count(); }
   // Claimed nodes are worth nothing any more, whoever visited them.
   bool is_claimed(NodeId node) const { return !claimed_.empty() && claimed_.contains(node); }
+  // Whether ground and claims are those of the other.
+  bool has_sets_of(const Task& other) const { return ground_ == other.ground_ && claimed_ == other.claimed_; }
   // What the first visit of a node is worth, the start among them.
   double prize(NodeId node) const { return is_claimed(node) ? 0 : view_.prize(node); }
+  // Whether nodes may be claimed that are no ground.
+  bool claims_beyond_ground() const { return claims_beyond_ground_; }
   // Whether first visits may be worth other than 1.
   bool has_prizes() const { return view_.has_prizes() || claims_beyond_ground_; }
 
   // Searched for when it is first asked for. Any number of threads may ask.
-  const Reach& reach() const;
+  const Reach& reach() const { return reach_.of(*this); }
 
  private:
   class LazyReach {
    public:
     LazyReach() = default;
-    LazyReach(const LazyReach& other) : known_(other.known()) {}
+    LazyReach(const LazyReach& other) { *this = other; }
     LazyReach& operator=(const LazyReach& other);
     const Reach& of(const Task& task);
     void forget() { known_ = nullptr; }
 
    private:
-    std::shared_ptr<const Reach> known() const;
-
     mutable std::mutex mutex_;
     std::shared_ptr<const Reach> known_;
   };
 
-  void check() const;
+  void check_reach_from(NodeId start) const;
 
   View view_;
   End asked_end_;

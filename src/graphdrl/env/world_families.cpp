@@ -43,70 +43,81 @@ double draw(double low, double high, Rng& rng) {
 }
 
 int draw_int(int low, int high, Rng& rng) {
-  return low + static_cast<int>(rng.below(static_cast<std::uint32_t>(high - low + 1)));
+  return low + rng.index(high - low + 1);
 }
 
-// Draws maps until a share of the cells is free.
+// Draws maps until so many cells are free.
 template <typename Draw>
-GridMap with_free_share(double share, const Draw& draw_map) {
+GridMap with_free_cells(double least, const Draw& draw_map) {
   for (;;) {
     GridMap drawn = draw_map();
-    const auto free = static_cast<double>(std::count(drawn.blocked.begin(), drawn.blocked.end(), false));
-    if (free >= share * drawn.rows * drawn.cols) return drawn;
+    if (static_cast<double>(drawn.free_count()) >= least) return drawn;
   }
 }
 
-World grid_world_of(const WorldSpec& spec, Rng& rng) {
+GridMap grid_of(const WorldSpec& spec, Rng& rng) {
   const int side = spec.size;
-  const auto map = [&]() -> GridMap {
-    if (spec.family == "obstacles") {
-      const int least_free = spec.blocked ? 1 : side * side / 2;
-      for (;;) {
-        const double share = spec.blocked ? *spec.blocked : draw(0.1, 0.4, rng);
-        GridMap drawn = random_obstacles_map(side, side, share, rng);
-        if (std::count(drawn.blocked.begin(), drawn.blocked.end(), false) >= least_free) return drawn;
-      }
-    }
-    if (spec.family == "maze") return maze_map(side, side, 0, rng);
-    if (spec.family == "loop-maze") return maze_map(side, side, draw(0.05, 0.2, rng), rng);
-    if (spec.family == "braided-maze") return braided_maze_map(side, side, draw(0.3, 1, rng), rng);
-    if (spec.family == "open") {
-      int rows = side;
-      int cols = draw_int(2, side, rng);
-      if (rng.below(2) == 0) std::swap(rows, cols);
-      return {.rows = rows, .cols = cols, .blocked = std::vector<bool>(static_cast<std::size_t>(rows) * cols)};
-    }
-    if (spec.family == "caves") {
-      return with_free_share(0.2, [&] { return caves_map(side, side, draw(0.4, 0.5, rng), rng); });
-    }
-    if (spec.family == "houses") {
-      return with_free_share(0.4, [&] { return house_map(side, side, draw_int(3, 8, rng), draw(0, 0.25, rng), rng); });
-    }
-    if (spec.family == "streets") {
-      return with_free_share(0.2, [&] {
-        const int block = draw_int(2, 7, rng);
-        return streets_map(side, side, draw_int(1, 3, rng), block, draw(0, 0.4, rng), rng);
-      });
-    }
-    return rooms_map(side, side, 4, rng);
-  };
-  return World(spec.name(), map());
+  if (spec.family == "obstacles") {
+    return with_free_cells(spec.blocked ? 1 : side * side / 2, [&] {
+      return random_obstacles_map(side, side, spec.blocked ? *spec.blocked : draw(0.1, 0.4, rng), rng);
+    });
+  }
+  if (spec.family == "maze") return maze_map(side, side, 0, rng);
+  if (spec.family == "loop-maze") return maze_map(side, side, draw(0.05, 0.2, rng), rng);
+  if (spec.family == "braided-maze") return braided_maze_map(side, side, draw(0.3, 1, rng), rng);
+  if (spec.family == "rooms") return rooms_map(side, side, 4, rng);
+  if (spec.family == "caves") {
+    return with_free_cells(0.2 * side * side, [&] { return caves_map(side, side, draw(0.4, 0.5, rng), rng); });
+  }
+  if (spec.family == "houses") {
+    return with_free_cells(0.4 * side * side, [&] {
+      const double furniture = draw(0, 0.25, rng);
+      return house_map(side, side, draw_int(3, 8, rng), furniture, rng);
+    });
+  }
+  if (spec.family == "streets") {
+    return with_free_cells(0.2 * side * side, [&] {
+      const int block = draw_int(2, 7, rng);
+      const double squares = draw(0, 0.4, rng);
+      return streets_map(side, side, draw_int(1, 3, rng), block, squares, rng);
+    });
+  }
+  int rows = side;  // "open"
+  int cols = draw_int(2, side, rng);
+  if (rng.below(2) == 0) std::swap(rows, cols);
+  return {.rows = rows, .cols = cols, .blocked = std::vector<bool>(static_cast<std::size_t>(rows) * cols)};
 }
 
 Graph graph_of(const WorldSpec& spec, Rng& rng) {
   const int nodes = spec.size;
   if (spec.family == "tree") return random_tree(nodes, rng);
   if (spec.family == "erdos-renyi") return largest_part(erdos_renyi_graph(nodes, draw(2.5, 4, rng), rng));
-  if (spec.family == "barabasi-albert") return barabasi_albert_graph(nodes, 1 + static_cast<int>(rng.below(2)), rng);
+  if (spec.family == "barabasi-albert") return barabasi_albert_graph(nodes, 1 + rng.index(2), rng);
   if (spec.family == "watts-strogatz") {
     return largest_part(watts_strogatz_graph(nodes, 2, draw(0.1, 0.3, rng), rng));
   }
   return largest_part(geometric_graph(nodes, draw(4, 7, rng), spec.weighted, rng));
 }
 
-const WorldFamily& find_family(const WorldSpec& spec) {
-  const auto* const family = std::find_if(kFamilies.begin(), kFamilies.end(),
-                                          [&](const WorldFamily& known) { return known.name == spec.family; });
+// The same number everywhere for the same text.
+std::uint64_t text_hash(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
+
+}  // namespace
+
+std::span<const WorldFamily> world_families() {
+  return kFamilies;
+}
+
+std::string WorldSpec::name() const {
+  return fmt::format("{}-{}{}{}", family, size, weighted ? "-weighted" : "", directed ? "-directed" : "");
+}
+
+const WorldFamily& family_of(const WorldSpec& spec) {
+  const auto* const family = std::ranges::find(kFamilies, spec.family, &WorldFamily::name);
   if (family == kFamilies.end()) {
     std::string names;
     for (const WorldFamily& known : kFamilies) names += fmt::format("{}{}", names.empty() ? "" : ", ", known.name);
@@ -135,25 +146,8 @@ const WorldFamily& find_family(const WorldSpec& spec) {
   return *family;
 }
 
-// The same number everywhere for the same text.
-std::uint64_t text_hash(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return hash;
-}
-
-}  // namespace
-
-std::span<const WorldFamily> world_families() {
-  return kFamilies;
-}
-
-std::string WorldSpec::name() const {
-  return fmt::format("{}-{}{}{}", family, size, weighted ? "-weighted" : "", directed ? "-directed" : "");
-}
-
 World random_world(const WorldSpec& spec, Rng& rng) {
-  if (find_family(spec).grid) return grid_world_of(spec, rng);
+  if (family_of(spec).grid) return World(spec.name(), grid_of(spec, rng));
   Graph graph = graph_of(spec, rng);
   if (spec.weighted && spec.family != "geometric") graph = with_random_costs(graph, kMostCost, rng);
   if (spec.directed) graph = with_one_way_edges(graph, kOneWayShare, rng);

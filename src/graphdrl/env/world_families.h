@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/world.h"
@@ -33,6 +32,9 @@ struct WorldSpec {
 
   std::string name() const;  // "maze-11", "tree-50-weighted-directed"; without the share
 };
+
+// Throws Error as random_world().
+const WorldFamily& family_of(const WorldSpec& spec);
 
 // The family's parameters are drawn from their ranges, then the world. Every world is connected, whichever way its
 // edges lead. Throws Error on an unknown family, on a size, costs, directions or a share of blocked cells that it

@@ -10,7 +10,7 @@
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/eval/statistics.h"
 #include "graphdrl/graph/search.h"
-#include "graphdrl/nn/grid_episodes.h"
+#include "graphdrl/nn/feature_episodes.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"
@@ -33,50 +33,9 @@ class Signature {
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
 
-// Walks one of the episodes side by side by random moves.
-struct Runner {
-  void begin(GridEpisodes& episodes, int index, const World& world) {
-    episodes.begin(index, world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))]);
-  }
-
-  Rng rng;
-  std::int64_t tenths = 0;  // sum of rewards, in tenths: an integer
-};
-
-}  // namespace
-
-EnvironmentBench bench_environment() {
-  const World world = load_one_world("paper:a");
-  GridEpisodes episodes({.world = world, .budget = Budget::parse("25"), .count = kEpisodes});
-  std::vector<Runner> runners;
-  for (int i = 0; i < kEpisodes; ++i) {
-    runners.push_back({.rng = Rng(derive_seed(1, 0, static_cast<std::uint64_t>(i)))});
-    runners.back().begin(episodes, i, world);
-  }
-  const Stopwatch watch;
-  for (int round = 0; round < kRounds; ++round) {
-    episodes.for_each([&](int index) {
-      Runner& runner = runners[index];
-      for (int i = 0; i < kStepsPerVisit; ++i) {
-        if (episodes.over(index)) runner.begin(episodes, index, world);
-        episodes.act(index, static_cast<int>(runner.rng.below(kActionCount)));
-        runner.tenths += std::lround(10 * episodes.rewards()[index]);
-      }
-    });
-  }
-  const double elapsed_s = watch.seconds();
-  Signature signature;
-  for (int i = 0; i < kEpisodes; ++i) {
-    signature.add(static_cast<std::uint64_t>(episodes.episode(i).position()));
-    signature.add(static_cast<std::uint64_t>(runners[i].tenths));
-    for (const std::uint32_t visits : episodes.episode(i).visits()) signature.add(visits);
-    for (const float value : episodes.observation_of(i)) signature.add(static_cast<std::uint64_t>(value));
-  }
-  const double steps = static_cast<double>(kEpisodes) * kStepsPerVisit * kRounds;
-  return {.steps_per_s = steps / elapsed_s, .signature = signature.value()};
+NodeId any_node(const World& world, Rng& rng) {
+  return world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
 }
-
-namespace {
 
 void add(Signature& signature, std::span<const NodeId> walk) {
   for (const NodeId node : walk) signature.add(static_cast<std::uint64_t>(node));
@@ -116,13 +75,10 @@ std::vector<Task> random_tasks() {
   for (const WorldSpec& spec : specs) {
     const World plain = random_world(spec, rng);
     for (const World& world : {plain, with_prizes(plain, rng)}) {
-      const auto any_node = [&] {
-        return world.valid_nodes()[rng.below(static_cast<std::uint32_t>(world.valid_count()))];
-      };
       for (const double ratio : kRatios) {
-        const NodeId start = any_node();
+        const NodeId start = any_node(world, rng);
         const double budget = std::floor(ratio * world.valid_count() * world.open().mean_cost());
-        const NodeId far_end = any_node();
+        const NodeId far_end = any_node(world, rng);
         const bool in_reach = costs_to(world.into(), far_end)[start] <= budget;
         for (const NodeId end : {kNoNode, start, in_reach ? far_end : start}) {
           tasks.emplace_back(world, start, budget, end == kNoNode ? End::anywhere() : End::at(end));
@@ -140,6 +96,42 @@ void add_random_tasks(Signature& signature, std::initializer_list<const char*> p
 }
 
 }  // namespace
+
+EnvironmentBench bench_environment() {
+  const World world = load_one_world("paper:a");
+  GridEpisodes episodes({.world = world, .budget = Budget::parse("25"), .count = kEpisodes});
+  struct Runner {
+    Rng rng;
+    std::int64_t tenths = 0;  // sum of rewards, in tenths: an integer
+  };
+  std::vector<Runner> runners;
+  const auto begin = [&](int index) { episodes.begin(index, any_node(world, runners[index].rng)); };
+  for (int i = 0; i < kEpisodes; ++i) {
+    runners.push_back({.rng = Rng(derive_seed(1, 0, static_cast<std::uint64_t>(i)))});
+    begin(i);
+  }
+  const Stopwatch watch;
+  for (int round = 0; round < kRounds; ++round) {
+    episodes.for_each([&](int index) {
+      Runner& runner = runners[index];
+      for (int i = 0; i < kStepsPerVisit; ++i) {
+        if (episodes.over(index)) begin(index);
+        episodes.act(index, static_cast<int>(runner.rng.below(kActionCount)));
+        runner.tenths += std::lround(10 * episodes.rewards()[index]);
+      }
+    });
+  }
+  const double elapsed_s = watch.seconds();
+  Signature signature;
+  for (int i = 0; i < kEpisodes; ++i) {
+    signature.add(static_cast<std::uint64_t>(episodes.episode(i).position()));
+    signature.add(static_cast<std::uint64_t>(runners[i].tenths));
+    for (const std::uint32_t visits : episodes.episode(i).visits()) signature.add(visits);
+    for (const float value : episodes.observation_of(i)) signature.add(static_cast<std::uint64_t>(value));
+  }
+  const double steps = static_cast<double>(kEpisodes) * kStepsPerVisit * kRounds;
+  return {.steps_per_s = steps / elapsed_s, .signature = signature.value()};
+}
 
 std::uint64_t planner_signature() {
   Signature signature;

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
@@ -31,6 +32,32 @@ constexpr std::array<PaperResult, 10> kPaperTable2 = {{{89.8, 8.3, 100.0},
 constexpr std::uint64_t kStartSeeds = 1;
 constexpr std::uint64_t kPolicySeeds = 2;
 constexpr std::uint64_t kBlockSeeds = 3;  // of a map's policy seed
+
+// One of the policies, its file read once.
+struct Contender {
+  std::string label;  // the name as given where two would share a label
+  bool plans;
+  std::function<std::unique_ptr<Policy>(std::uint64_t seed)> make;
+};
+
+std::vector<Contender> make_contenders(const ComparisonOptions& options) {
+  std::vector<Contender> contenders;
+  for (const std::string& name : options.policies) {
+    if (const auto own = options.own_policies.find(name); own != options.own_policies.end()) {
+      contenders.push_back({name, false, [make = own->second](std::uint64_t) { return make(); }});
+    } else {
+      const auto spec = std::make_shared<const PolicySpec>(parse_policy(name));
+      contenders.push_back(
+          {spec->label, plans(*spec), [spec](std::uint64_t seed) { return make_policy(*spec, seed); }});
+    }
+  }
+  std::map<std::string, std::set<std::string>> names;
+  for (std::size_t i = 0; i < contenders.size(); ++i) names[contenders[i].label].insert(options.policies[i]);
+  for (std::size_t i = 0; i < contenders.size(); ++i) {
+    if (names[contenders[i].label].size() > 1) contenders[i].label = options.policies[i];
+  }
+  return contenders;
+}
 
 // A world with what all policies share on it.
 struct Arena {
@@ -97,21 +124,11 @@ struct Block {
   std::vector<int> episodes;
 };
 
-bool is_planner(const std::string& name, const ComparisonOptions& options) {
-  return !options.own_policies.contains(name) && plans(parse_policy(name));
-}
-
-std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed, const ComparisonOptions& options) {
-  const auto own = options.own_policies.find(name);
-  return own == options.own_policies.end() ? graphdrl::make_policy(name, seed) : own->second();
-}
-
 // Planners get their starts one by one, others as many together as pays.
-std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const ComparisonOptions& options) {
-  const std::vector<std::string>& policies = options.policies;
+std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const std::vector<Contender>& contenders) {
   std::vector<Block> blocks;
-  for (int policy = 0; policy < std::ssize(policies); ++policy) {
-    const bool plans = is_planner(policies[policy], options);
+  for (int policy = 0; policy < std::ssize(contenders); ++policy) {
+    const bool plans = contenders[policy].plans;
     for (int map = 0; map < std::ssize(arenas); ++map) {
       const std::vector<NodeId>& starts = arenas[map].starts;
       std::vector<int> order(starts.size());
@@ -135,19 +152,20 @@ std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const Compariso
 // Percents, by policy, map and episode; an empty one where a policy's search is out of reach.
 using Coverages = std::vector<std::vector<std::vector<double>>>;
 
-Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& options, const Clock& clock) {
-  Coverages coverages(options.policies.size(), std::vector<std::vector<double>>(arenas.size()));
+Coverages measure(const std::vector<Arena>& arenas, const std::vector<Contender>& contenders, std::uint64_t seed,
+                  const Clock& clock) {
+  Coverages coverages(contenders.size(), std::vector<std::vector<double>>(arenas.size()));
   for (auto& of_policy : coverages) {
     for (std::size_t map = 0; map < arenas.size(); ++map) of_policy[map].resize(arenas[map].starts.size());
   }
-  const std::vector<Block> blocks = make_blocks(arenas, options);
+  const std::vector<Block> blocks = make_blocks(arenas, contenders);
   std::vector<std::uint8_t> out_of_reach(blocks.size());
   parallel_for(static_cast<int>(blocks.size()), [&](int b) {
     const Block& block = blocks[b];
     const Arena& arena = arenas[block.map];
-    const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
+    const std::uint64_t map_seed = derive_seed(seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
     const std::uint64_t block_seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0]));
-    const auto policy = make_policy(options.policies[block.policy], block_seed, options);
+    const auto policy = contenders[block.policy].make(block_seed);
     std::vector<NodeId> starts;
     for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
     try {
@@ -164,17 +182,6 @@ Coverages measure(const std::vector<Arena>& arenas, const ComparisonOptions& opt
     if (out_of_reach[b] != 0) coverages[blocks[b].policy][blocks[b].map].clear();
   }
   return coverages;
-}
-
-// A policy's label; the name as given where two policies would share one.
-std::string unambiguous_label(const std::string& name, const ComparisonOptions& options) {
-  const auto label_of = [&](const std::string& policy) {
-    return options.own_policies.contains(policy) ? policy : parse_policy(policy).label;
-  };
-  for (const std::string& other : options.policies) {
-    if (other != name && label_of(other) == label_of(name)) return name;
-  }
-  return label_of(name);
 }
 
 ComparisonOverall summarise_rows(const std::string& policy, std::span<const ComparisonRow> rows) {
@@ -211,10 +218,11 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
     throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
   }
   const std::vector<Arena> arenas = make_arenas(worlds, options);
-  const Coverages coverages = measure(arenas, options, clock);
+  const std::vector<Contender> contenders = make_contenders(options);
+  const Coverages coverages = measure(arenas, contenders, options.seed, clock);
   Comparison comparison{.options = options, .rows = {}, .overall = {}};
-  for (std::size_t policy = 0; policy < options.policies.size(); ++policy) {
-    const std::string label = unambiguous_label(options.policies[policy], options);
+  for (std::size_t policy = 0; policy < contenders.size(); ++policy) {
+    const std::string& label = contenders[policy].label;
     for (std::size_t map = 0; map < arenas.size(); ++map) {
       const Arena& arena = arenas[map];
       const std::vector<double>& values = coverages[policy][map];

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/policy.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/eval/statistics.h"
 

@@ -9,10 +9,6 @@
 namespace graphdrl {
 namespace {
 
-std::string number(const std::optional<double>& value) {
-  return value ? fmt::format("{:.1f}", *value) : "–";
-}
-
 std::string interval(const std::optional<Interval>& value) {
   return value ? fmt::format("{:5.1f} – {:5.1f}", value->low, value->high) : "–";
 }
@@ -26,9 +22,9 @@ std::string format_rows(std::span<const ComparisonRow> rows, std::size_t name_wi
   for (const ComparisonRow& row : rows) {
     const auto coverage = row.coverage;
     text += fmt::format("{:{}}  {:5} {:>6} {:>5} {:>5}  {:^13} {:>7}", row.map, name_width, row.valid_nodes,
-                        coverage ? number(coverage->mean) : "–", coverage ? number(coverage->std) : "–",
-                        coverage ? number(coverage->best) : "–", interval(coverage ? coverage->ci95 : std::nullopt),
-                        number(row.optimum));
+                        coverage ? or_dash(coverage->mean) : "–", coverage ? or_dash(coverage->std) : "–",
+                        coverage ? or_dash(coverage->best) : "–", interval(coverage ? coverage->ci95 : std::nullopt),
+                        or_dash(row.optimum));
     if (row.paper) {
       text += fmt::format(" |        {:6.1f} {:5.1f} {:5.1f}", row.paper->mean, row.paper->std, row.paper->best);
     }
@@ -37,50 +33,46 @@ std::string format_rows(std::span<const ComparisonRow> rows, std::size_t name_wi
   return text + '\n';
 }
 
-enum class Share { kNone, kSome, kAll };
+struct Wording {
+  std::string none;
+  std::string some;
+  std::string all;
+};
 
-// Of the rows, how many are so.
+// What is said where none of the rows is so, where some are, where all are.
 template <typename IsSo>
-Share share_of(const std::vector<ComparisonRow>& rows, const IsSo& is_so) {
+std::string by_share(const std::vector<ComparisonRow>& rows, const IsSo& is_so, const Wording& wording) {
   const auto count = std::count_if(rows.begin(), rows.end(), is_so);
-  if (count == 0) return Share::kNone;
-  return count == std::ssize(rows) ? Share::kAll : Share::kSome;
+  return count == 0 ? wording.none : count == std::ssize(rows) ? wording.all : wording.some;
 }
 
 std::string what_is_measured(const std::vector<ComparisonRow>& rows) {
-  switch (share_of(rows, [](const ComparisonRow& row) { return row.has_prizes; })) {
-    case Share::kNone:
-      return "Coverage of the valid nodes in %";
-    case Share::kSome:
-      return "Coverage of the valid nodes, or of the sum of prizes where a map has them, in %";
-    case Share::kAll:
-      break;
-  }
-  return "Coverage of the sum of prizes in %";
+  return by_share(rows, [](const ComparisonRow& row) { return row.has_prizes; },
+                  {.none = "Coverage of the valid nodes in %",
+                   .some = "Coverage of the valid nodes, or of the sum of prizes where a map has them, in %",
+                   .all = "Coverage of the sum of prizes in %"});
 }
 
 std::string budgets_of(const Comparison& comparison) {
   const auto& rows = comparison.rows;
   if (comparison.options.budget) return comparison.options.budget->text();
-  const Share same = share_of(rows, [&](const ComparisonRow& row) { return row.budget == rows.front().budget; });
-  if (same == Share::kAll) return fmt::format("{:g}", rows.front().budget);
-  const Share given = share_of(rows, [](const ComparisonRow& row) { return row.given.budget.has_value(); });
-  return given == Share::kAll ? "the maps' own" : fmt::format("the maps' own, else {:g}", kPaperBudget);
+  const double first = rows.front().budget;
+  const bool same =
+      std::all_of(rows.begin(), rows.end(), [&](const ComparisonRow& row) { return row.budget == first; });
+  if (same) return fmt::format("{:g}", first);
+  const bool own = std::all_of(rows.begin(), rows.end(), [](const ComparisonRow& row) { return row.given.budget; });
+  return own ? "the maps' own" : fmt::format("the maps' own, else {:g}", kPaperBudget);
 }
 
 std::string starts_of(const Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
   if (options.all_starts) return "every start once";
   const std::string episodes = fmt::format("{} episode{} per map", options.episodes, options.episodes == 1 ? "" : "s");
-  switch (share_of(comparison.rows, [](const ComparisonRow& row) { return row.given.start != kNoNode; })) {
-    case Share::kNone:
-      return fmt::format("{}, random starts (seed {})", episodes, options.seed);
-    case Share::kSome:
-      return fmt::format("{}, the maps' own starts, else random ones (seed {})", episodes, options.seed);
-    case Share::kAll:
-      break;
-  }
-  return episodes + ", the maps' own starts";
+  const auto starts = by_share(comparison.rows, [](const ComparisonRow& row) { return row.given.start != kNoNode; },
+                               {.none = fmt::format("random starts (seed {})", options.seed),
+                                .some = fmt::format("the maps' own starts, else random ones (seed {})", options.seed),
+                                .all = "the maps' own starts"});
+  return episodes + ", " + starts;
 }
 
 // Begins with a comma; empty where nothing is said of ends.
@@ -89,15 +81,10 @@ std::string ends_of(const Comparison& comparison) {
   if (end == "anywhere") return ", walks end anywhere";
   if (end == "start") return ", walks end where they start";
   if (!end.empty()) return fmt::format(", walks end at {}", in_quotes(end));
-  switch (share_of(comparison.rows, [](const ComparisonRow& row) { return row.given.end != kNoNode; })) {
-    case Share::kNone:
-      return "";
-    case Share::kSome:
-      return ", walks end at the maps' own ends, else anywhere";
-    case Share::kAll:
-      break;
-  }
-  return ", walks end at the maps' own ends";
+  return by_share(comparison.rows, [](const ComparisonRow& row) { return row.given.end != kNoNode; },
+                  {.none = "",
+                   .some = ", walks end at the maps' own ends, else anywhere",
+                   .all = ", walks end at the maps' own ends"});
 }
 
 }  // namespace
@@ -115,7 +102,7 @@ std::string format_comparison(const Comparison& comparison) {
   }
   text += fmt::format("{:{}}  {:>5} {:>6}  {}\n", "overall", name_width, "maps", "mean", "share of the optimum");
   for (const ComparisonOverall& overall : comparison.overall) {
-    text += fmt::format("{:{}}  {:5} {:>6}  {:>7}\n", overall.policy, name_width, overall.maps, number(overall.mean),
+    text += fmt::format("{:{}}  {:5} {:>6}  {:>7}\n", overall.policy, name_width, overall.maps, or_dash(overall.mean),
                         overall.ratio_to_optimum ? fmt::format("{:.1f} %", 100 * *overall.ratio_to_optimum) : "–");
   }
   const auto missing = [&](const auto& is_there) {

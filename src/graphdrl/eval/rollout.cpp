@@ -49,7 +49,7 @@ std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const Node
   }
   std::vector<RolloutResult> results;
   results.reserve(episodes.size());
-  for (const Episode& ended : episodes) results.push_back({ended.walk(), ended.coverage(), ended.prize()});
+  for (const Episode& ended : episodes) results.push_back({ended.walk(), ended.prize()});
   return results;
 }
 

@@ -12,7 +12,6 @@ namespace graphdrl {
 
 struct RolloutResult {
   std::vector<NodeId> walk;  // the start first
-  double coverage;           // of the valid nodes, a fraction
   double prize;
 };
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace graphdrl {
@@ -38,5 +39,8 @@ double median(std::vector<double> values);
 // Between the sorted values, linearly: 0 gives the smallest, 0.5 the median, 1 the largest. REQUIRES: values is not
 // empty, and a share from 0 to 1.
 double quantile(std::vector<double> values, double share);
+
+// "1.5", or "–" where there is no value. format: as fmt takes it.
+std::string or_dash(const std::optional<double>& value, const char* format = "{:.1f}");
 
 }  // namespace graphdrl

@@ -8,12 +8,11 @@
 #include <span>
 #include <vector>
 
-#include "graphdrl/graph/pair_costs.h"
-
 namespace graphdrl {
 
 struct GridMap;
 
+using NodeId = std::int32_t;
 inline constexpr NodeId kNoNode = -1;
 
 // Undirected, or from a to b in a directed graph.
@@ -24,6 +23,17 @@ struct Edge {
 };
 
 enum class EdgeKind { kUndirected, kDirected };
+
+// Costs between all pairs of nodes, computed when they are asked for: symmetric, finite, not negative. Immutable: any
+// number of threads may ask.
+class PairCosts {
+ public:
+  virtual ~PairCosts() = default;
+  virtual double cost(NodeId from, NodeId to) const = 0;
+  // Whether no way through other nodes is cheaper than the straight one. Distances that are rounded to the nearest
+  // number are not metric.
+  virtual bool metric() const { return false; }
+};
 
 // A graph without loops or parallel edges; nodes are 0 … node_count() - 1. Immutable, so any number of threads may read
 // it. The order of a node's neighbours is part of the graph: searches and ties follow it.
@@ -36,11 +46,10 @@ class Graph {
   // sorting each node's neighbours. REQUIRES: node_count >= 0.
   static Graph from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind = EdgeKind::kUndirected);
 
-  // Four-connected, nodes in row-major order, neighbours in the order left, up, right, down; every edge costs 1.
-  // REQUIRES: rows * cols fits a NodeId.
-  static Graph grid(int rows, int cols);
-  // The edges between free cells of a map. Diagonal neighbours, if the map has them, follow clockwise from left-up.
+  // The edges between free cells of a map: nodes in row-major order, neighbours in that of kGridSteps.
   static Graph grid(const GridMap& map);
+  // The same without obstacles and diagonals. REQUIRES: rows * cols fits a NodeId.
+  static Graph grid(int rows, int cols);
 
   // An undirected edge between any two nodes. A node's neighbours are in ascending order: first those after the node,
   // then those before it. Memory: O(nodes), and what the costs need. Cost: a look at every pair. If costs are not
@@ -54,10 +63,6 @@ class Graph {
 
   // The same nodes without the edges of dropped ones. REQUIRES: dropped has a value per node.
   Graph without(const std::vector<bool>& dropped) const;
-
-  // The given nodes, numbered in the order given, and the edges among them. number: [N], scratch memory, kNoNode
-  // everywhere before and after. REQUIRES: no node is given twice.
-  Graph induced(std::span<const NodeId> nodes, std::vector<NodeId>& number) const;
 
   // Undirected, every edge of cost 1. offsets: [N + 1], where each node's neighbours begin, and the end. REQUIRES: each
   // edge stands once in the list of each of its two nodes.
@@ -102,10 +107,13 @@ class Graph {
   std::vector<Edge> edges() const;
 
  private:
+  struct CostSum;
+
   // Goes on with the next node, after the neighbours of this one, and their costs if edges have costs, were added.
   void close_node() { offsets_.push_back(std::ssize(neighbours_)); }
   // Forgets costs that are all 1, else computes what is known of them.
   void settle_costs();
+  void settle_costs(const CostSum& all, std::int64_t count);
 
   EdgeKind kind_ = EdgeKind::kUndirected;
   std::vector<std::int64_t> offsets_ = {0};      // [N + 1]

@@ -27,7 +27,8 @@ Graph watts_strogatz_graph(int nodes, int reach, double rewired, Rng& rng);
 // `lengths_cost` an edge costs its length, in mean lengths.
 Graph geometric_graph(int nodes, double mean_degree, bool lengths_cost, Rng& rng);
 
-// The largest connected part, its nodes renumbered in ascending order; of equally large ones that of the lowest node.
+// The largest connected part of an undirected graph, its nodes renumbered in ascending order; of equally large ones
+// that of the lowest node.
 Graph largest_part(const Graph& graph);
 
 // The same edges, at costs drawn uniformly from the integers 1 to `most`.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 
 #include "graphdrl/graph/components.h"
 
@@ -12,59 +11,82 @@ namespace {
 // The frozen splits join rooms in the order drawn up to this size; the corridors are as long as the map is wide.
 constexpr int kMostCellsJoinedAsDrawn = 500 * 500;
 
+struct Rectangle {
+  int top;
+  int left;
+  int height;
+  int width;
+};
+
+// Calls visit(cell) for the cells of a rectangle, row by row; steps of 2 leave out every other row and column.
+template <typename Visit>
+void for_each_cell(const Rectangle& cells, const Visit& visit, int step = 1) {
+  for (int row = cells.top; row < cells.top + cells.height; row += step) {
+    for (int col = cells.left; col < cells.left + cells.width; col += step) visit(Cell{row, col});
+  }
+}
+
+Rectangle all_of(const GridMap& map) {
+  return {0, 0, map.rows, map.cols};
+}
+
+void fill(GridMap& map, const Rectangle& cells, bool blocked) {
+  for_each_cell(cells, [&](Cell cell) { map.blocked[map.node(cell)] = blocked; });
+}
+
 GridMap blocked_map(int rows, int cols) {
   return {.rows = rows, .cols = cols, .blocked = std::vector<bool>(static_cast<std::size_t>(rows) * cols, true)};
 }
 
+// Each cell is blocked with a probability.
+GridMap noise_map(int rows, int cols, double blocked, Rng& rng) {
+  GridMap map = blocked_map(rows, cols);
+  for (auto cell : map.blocked) cell = rng.uniform() < blocked;
+  return map;
+}
+
+// A rectangle of a height and a width, anywhere on the map.
+Rectangle draw_rectangle(const GridMap& map, int height, int width, Rng& rng) {
+  return {rng.index(map.rows - height + 1), rng.index(map.cols - width + 1), height, width};
+}
+
 // A random spanning tree of the rooms by depth-first search, the usual maze: long corridors, few short dead ends.
-void carve_maze(GridMap& map, Rng& rng) {
+GridMap carved_maze(int rows, int cols, Rng& rng) {
+  GridMap map = blocked_map(rows, cols);
   std::vector<Cell> trail = {{0, 0}};
   map.blocked[0] = false;
   while (!trail.empty()) {
     const Cell here = trail.back();
-    std::array<Cell, kAllDirections.size()> fresh;
-    std::uint32_t count = 0;
-    for (const Cell next : {Cell{here.row, here.col - 2}, Cell{here.row - 2, here.col}, Cell{here.row, here.col + 2},
-                            Cell{here.row + 2, here.col}}) {
-      if (map.contains(next) && map.blocked[map.node(next)]) fresh[count++] = next;
+    std::array<Cell, kDirectionCount> ways;
+    int count = 0;
+    for (const Cell& step : map.steps()) {
+      const Cell next = here + step + step;
+      if (map.contains(next) && !map.is_free(next)) ways[count++] = step;
     }
     if (count == 0) {
       trail.pop_back();
       continue;
     }
-    const Cell next = fresh[rng.below(count)];
-    map.blocked[map.node({(here.row + next.row) / 2, (here.col + next.col) / 2})] = false;
-    map.blocked[map.node(next)] = false;
-    trail.push_back(next);
+    const Cell step = ways[rng.index(count)];
+    trail.push_back(here + step + step);
+    map.blocked[map.node(here + step)] = map.blocked[map.node(trail.back())] = false;
   }
+  return map;
 }
 
 // Whether a cell beside a room is a wall with another room behind it.
 bool parts_rooms(const GridMap& map, Cell cell) {
-  if (!map.contains(cell) || !map.blocked[map.node(cell)]) return false;
+  if (!map.contains(cell) || map.is_free(cell)) return false;
   return cell.row % 2 == 0 ? cell.col + 1 < map.cols : cell.row + 1 < map.rows;
-}
-
-int open_sides(const GridMap& map, Cell cell) {
-  int count = 0;
-  for (const Direction direction : kAllDirections) {
-    const NodeId next = grid_neighbour(map.rows, map.cols, map.node(cell), direction);
-    count += next != kNoNode && !map.blocked[next];
-  }
-  return count;
 }
 
 // Draws a rectangle of 2 to max_room cells a side, frees its cells and gives the middle one.
 Cell dig_room(GridMap& map, int max_room, Rng& rng) {
-  const auto below = [&](int count) { return static_cast<int>(rng.below(static_cast<std::uint32_t>(count))); };
-  const int height = std::min(map.rows, 2 + below(max_room - 1));
-  const int width = std::min(map.cols, 2 + below(max_room - 1));
-  const int top = below(map.rows - height + 1);
-  const int left = below(map.cols - width + 1);
-  for (int row = top; row < top + height; ++row) {
-    for (int col = left; col < left + width; ++col) map.blocked[map.node({row, col})] = false;
-  }
-  return {top + height / 2, left + width / 2};
+  const int height = std::min(map.rows, 2 + rng.index(max_room - 1));
+  const int width = std::min(map.cols, 2 + rng.index(max_room - 1));
+  const Rectangle room = draw_rectangle(map, height, width, rng);
+  fill(map, room, false);
+  return {room.top + height / 2, room.left + width / 2};
 }
 
 // Frees the cells of a corridor with at most one bend.
@@ -91,19 +113,12 @@ void sort_by_strips(std::vector<Cell>& cells, int strip_rows) {
   });
 }
 
-struct Rectangle {
-  int top;
-  int left;
-  int height;
-  int width;
-};
-
 // Splits a rectangle in two along its longer side, and leaves a strip of some cells between them: gives the strip, and
 // what is on either side of it. REQUIRES: the longer side has at least thickness + 2 cells.
 std::array<Rectangle, 3> split(const Rectangle& whole, int thickness, Rng& rng) {
   const bool across = whole.height > whole.width || (whole.height == whole.width && rng.below(2) == 0);
   const int length = across ? whole.height : whole.width;
-  const int before = 1 + static_cast<int>(rng.below(static_cast<std::uint32_t>(length - thickness - 1)));
+  const int before = 1 + rng.index(length - thickness - 1);
   const auto part = [&](int from, int size) {
     return across ? Rectangle{whole.top + from, whole.left, size, whole.width}
                   : Rectangle{whole.top, whole.left + from, whole.height, size};
@@ -111,23 +126,14 @@ std::array<Rectangle, 3> split(const Rectangle& whole, int thickness, Rng& rng) 
   return {part(before, thickness), part(0, before), part(before + thickness, length - before - thickness)};
 }
 
-void fill(GridMap& map, const Rectangle& rectangle, bool blocked) {
-  for (int row = rectangle.top; row < rectangle.top + rectangle.height; ++row) {
-    for (int col = rectangle.left; col < rectangle.left + rectangle.width; ++col) {
-      map.blocked[map.node({row, col})] = blocked;
-    }
-  }
-}
-
 // Whether more than half of a cell and those around it are blocked.
 bool mostly_blocked(const GridMap& map, Cell cell) {
-  int cells = 0;
-  int blocked = 0;
-  for (int row = std::max(cell.row - 1, 0); row <= std::min(cell.row + 1, map.rows - 1); ++row) {
-    for (int col = std::max(cell.col - 1, 0); col <= std::min(cell.col + 1, map.cols - 1); ++col) {
-      ++cells;
-      blocked += map.blocked[map.node({row, col})];
-    }
+  int cells = 1;
+  int blocked = map.is_free(cell) ? 0 : 1;
+  for (const Cell& step : kGridSteps) {
+    if (!map.contains(cell + step)) continue;
+    ++cells;
+    blocked += map.blocked[map.node(cell + step)];
   }
   return 2 * blocked > cells;
 }
@@ -140,17 +146,15 @@ void build_walls(GridMap& map, const Rectangle& whole, int max_room, Rng& rng) {
   build_walls(map, other, max_room, rng);
   fill(map, wall, true);
   const bool across = one.top != wall.top;
-  std::vector<Cell> places;
-  for (int row = wall.top; row < wall.top + wall.height; ++row) {
-    for (int col = wall.left; col < wall.left + wall.width; ++col) {
-      const Cell before = across ? Cell{row - 1, col} : Cell{row, col - 1};
-      const Cell after = across ? Cell{row + 1, col} : Cell{row, col + 1};
-      if (!map.blocked[map.node(before)] && !map.blocked[map.node(after)]) places.push_back({row, col});
-    }
-  }
-  const std::uint32_t doors = places.empty() ? 0 : 1 + rng.below(2);
-  for (std::uint32_t i = 0; i < doors; ++i) {
-    map.blocked[map.node(places[rng.below(static_cast<std::uint32_t>(places.size()))])] = false;
+  std::vector<Cell> between;  // the two parts
+  for_each_cell(wall, [&](Cell cell) {
+    const Cell step = across ? Cell{1, 0} : Cell{0, 1};
+    const Cell before{cell.row - step.row, cell.col - step.col};
+    if (map.is_free(before) && map.is_free(cell + step)) between.push_back(cell);
+  });
+  const int doors = between.empty() ? 0 : 1 + rng.index(2);
+  for (int i = 0; i < doors; ++i) {
+    map.blocked[map.node(between[rng.below(static_cast<std::uint32_t>(between.size()))])] = false;
   }
 }
 
@@ -161,7 +165,7 @@ void build_streets(GridMap& map, const Rectangle& whole, int max_street, int max
     fill(map, whole, !(rng.uniform() < squares));
     return;
   }
-  const int width = 1 + static_cast<int>(rng.below(static_cast<std::uint32_t>(std::min(max_street, longer - 2))));
+  const int width = 1 + rng.index(std::min(max_street, longer - 2));
   const auto [street, one, other] = split(whole, width, rng);
   fill(map, street, false);
   build_streets(map, one, max_street, max_block, squares, rng);
@@ -181,70 +185,57 @@ GridMap largest_component(const GridMap& map) {
 }
 
 GridMap random_obstacles_map(int rows, int cols, double obstacles, Rng& rng) {
-  GridMap map = blocked_map(rows, cols);
-  for (std::size_t i = 0; i < map.blocked.size(); ++i) map.blocked[i] = rng.uniform() < obstacles;
-  return largest_component(map);
+  return largest_component(noise_map(rows, cols, obstacles, rng));
 }
 
 GridMap maze_map(int rows, int cols, double loops, Rng& rng) {
-  GridMap map = blocked_map(rows, cols);
-  carve_maze(map, rng);
-  for (int row = 0; row < rows; row += 2) {
-    for (int col = 0; col < cols; col += 2) {
-      for (const Cell wall : {Cell{row, col + 1}, Cell{row + 1, col}}) {
-        if (parts_rooms(map, wall) && rng.uniform() < loops) map.blocked[map.node(wall)] = false;
-      }
+  GridMap map = carved_maze(rows, cols, rng);
+  const auto open_walls = [&](Cell room) {
+    for (const Cell wall : {room + Cell{0, 1}, room + Cell{1, 0}}) {
+      if (parts_rooms(map, wall) && rng.uniform() < loops) map.blocked[map.node(wall)] = false;
     }
-  }
+  };
+  for_each_cell(all_of(map), open_walls, 2);
   return map;
 }
 
 GridMap braided_maze_map(int rows, int cols, double braid, Rng& rng) {
-  GridMap map = blocked_map(rows, cols);
-  carve_maze(map, rng);
-  for (int row = 0; row < rows; row += 2) {
-    for (int col = 0; col < cols; col += 2) {
-      if (open_sides(map, {row, col}) != 1 || !(rng.uniform() < braid)) continue;
-      std::array<Cell, kAllDirections.size()> closed;
-      std::uint32_t count = 0;
-      for (const Cell wall : {Cell{row - 1, col}, Cell{row, col - 1}, Cell{row, col + 1}, Cell{row + 1, col}}) {
-        if (parts_rooms(map, wall)) closed[count++] = wall;
-      }
-      if (count > 0) map.blocked[map.node(closed[rng.below(count)])] = false;
+  GridMap map = carved_maze(rows, cols, rng);
+  const auto open_dead_end = [&](Cell room) {
+    const auto ways = std::ranges::count_if(map.steps(), [&](const Cell& step) { return map.is_free(room + step); });
+    if (ways != 1 || !(rng.uniform() < braid)) return;
+    std::array<Cell, kDirectionCount> closed;
+    int count = 0;
+    for (const Cell wall : {room + Cell{-1, 0}, room + Cell{0, -1}, room + Cell{0, 1}, room + Cell{1, 0}}) {
+      if (parts_rooms(map, wall)) closed[count++] = wall;
     }
-  }
+    if (count > 0) map.blocked[map.node(closed[rng.index(count)])] = false;
+  };
+  for_each_cell(all_of(map), open_dead_end, 2);
   return map;
 }
 
 GridMap rooms_map(int rows, int cols, int max_room, Rng& rng) {
   GridMap map = blocked_map(rows, cols);
   const int rooms = std::max(2, rows * cols / (2 * max_room * max_room));
-  if (rows * cols <= kMostCellsJoinedAsDrawn) {
-    Cell before = dig_room(map, max_room, rng);
-    for (int i = 1; i < rooms; ++i) {
-      const Cell room = dig_room(map, max_room, rng);
-      dig_corridor(map, before, room, rng);
-      before = room;
-    }
-    return map;
-  }
+  const bool as_drawn = rows * cols <= kMostCellsJoinedAsDrawn;
   std::vector<Cell> centres;
-  centres.reserve(static_cast<std::size_t>(rooms));
-  for (int i = 0; i < rooms; ++i) centres.push_back(dig_room(map, max_room, rng));
+  for (int i = 0; i < rooms; ++i) {
+    centres.push_back(dig_room(map, max_room, rng));
+    if (as_drawn && i > 0) dig_corridor(map, centres[i - 1], centres[i], rng);
+  }
+  if (as_drawn) return map;
   sort_by_strips(centres, 2 * max_room);
-  for (std::size_t i = 1; i < centres.size(); ++i) dig_corridor(map, centres[i - 1], centres[i], rng);
+  for (int i = 1; i < rooms; ++i) dig_corridor(map, centres[i - 1], centres[i], rng);
   return map;
 }
 
 GridMap caves_map(int rows, int cols, double rock, Rng& rng) {
   constexpr int kSmoothings = 4;
-  GridMap map = blocked_map(rows, cols);
-  for (std::size_t i = 0; i < map.blocked.size(); ++i) map.blocked[i] = rng.uniform() < rock;
+  GridMap map = noise_map(rows, cols, rock, rng);
   for (int i = 0; i < kSmoothings; ++i) {
     GridMap smooth = map;
-    for (int row = 0; row < rows; ++row) {
-      for (int col = 0; col < cols; ++col) smooth.blocked[map.node({row, col})] = mostly_blocked(map, {row, col});
-    }
+    for_each_cell(all_of(map), [&](Cell cell) { smooth.blocked[map.node(cell)] = mostly_blocked(map, cell); });
     map = std::move(smooth);
   }
   return largest_component(map);
@@ -252,19 +243,16 @@ GridMap caves_map(int rows, int cols, double rock, Rng& rng) {
 
 GridMap house_map(int rows, int cols, int max_room, double furniture, Rng& rng) {
   GridMap map = blocked_map(rows, cols);
-  fill(map, {0, 0, rows, cols}, false);
-  build_walls(map, {0, 0, rows, cols}, max_room, rng);
-  const auto floor = static_cast<double>(std::count(map.blocked.begin(), map.blocked.end(), false));
+  fill(map, all_of(map), false);
+  build_walls(map, all_of(map), max_room, rng);
+  const auto floor = static_cast<double>(map.free_count());
   double taken = 0;
   for (double tries = floor; tries > 0 && taken < furniture * floor; --tries) {
-    const auto below = [&](int count) { return static_cast<int>(rng.below(static_cast<std::uint32_t>(count))); };
-    const int height = std::min(rows, 1 + below(3));
-    const int width = std::min(cols, 1 + below(height == 3 ? 2 : 3));
-    const Rectangle piece{below(rows - height + 1), below(cols - width + 1), height, width};
+    const int height = std::min(rows, 1 + rng.index(3));
+    const int width = std::min(cols, 1 + rng.index(height == 3 ? 2 : 3));
+    const Rectangle piece = draw_rectangle(map, height, width, rng);
     bool fits = true;
-    for (int row = piece.top; row < piece.top + height; ++row) {
-      for (int col = piece.left; col < piece.left + width; ++col) fits = fits && !map.blocked[map.node({row, col})];
-    }
+    for_each_cell(piece, [&](Cell cell) { fits = fits && map.is_free(cell); });
     if (!fits) continue;
     fill(map, piece, true);
     taken += height * width;
@@ -274,7 +262,7 @@ GridMap house_map(int rows, int cols, int max_room, double furniture, Rng& rng) 
 
 GridMap streets_map(int rows, int cols, int max_street, int max_block, double squares, Rng& rng) {
   GridMap map = blocked_map(rows, cols);
-  build_streets(map, {0, 0, rows, cols}, max_street, max_block, squares, rng);
+  build_streets(map, all_of(map), max_street, max_block, squares, rng);
   return largest_component(map);
 }
 

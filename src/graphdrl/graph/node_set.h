@@ -28,6 +28,8 @@ class NodeSet {
     return sum;
   }
 
+  friend bool operator==(const NodeSet&, const NodeSet&) = default;
+
   // For files: bit i % 64 of word i / 64 stands for node i.
   std::vector<std::uint64_t>& words() { return words_; }
   const std::vector<std::uint64_t>& words() const { return words_; }
@@ -42,18 +44,18 @@ class NodeSetView {
  public:
   NodeSetView(const NodeSet&&) = delete;              // it would be gone
   NodeSetView(const NodeSet& set) : common_(&set) {}  // NOLINT(google-explicit-constructor): a set is a view of itself
-  // place: [N], a node's bit in `row`, or -1 where `common` says whether it is in the set.
-  NodeSetView(const NodeSet& common, const std::int32_t* place, const std::uint64_t* row)
-      : common_(&common), place_(place), row_(row) {}
+  // bits: [N], a node's bit in `row`, or -1 where `common` says whether it is in the set.
+  NodeSetView(const NodeSet& common, const std::int32_t* bits, const std::uint64_t* row)
+      : common_(&common), bits_(bits), row_(row) {}
 
   bool contains(NodeId node) const {
-    if (place_ == nullptr || place_[node] < 0) return common_->contains(node);
-    return (row_[place_[node] / 64] >> (place_[node] % 64) & 1) != 0;
+    if (bits_ == nullptr || bits_[node] < 0) return common_->contains(node);
+    return (row_[bits_[node] / 64] >> (bits_[node] % 64) & 1) != 0;
   }
 
  private:
   const NodeSet* common_;
-  const std::int32_t* place_ = nullptr;
+  const std::int32_t* bits_ = nullptr;
   const std::uint64_t* row_ = nullptr;
 };
 

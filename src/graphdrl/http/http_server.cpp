@@ -297,7 +297,7 @@ class HttpServer::Loop::Connection : public std::enable_shared_from_this<Connect
     const bool http_1_1 = !may_stay || parser_->get().version() >= 11;
     stays_ = may_stay && parser_->keep_alive();
     static const auto kNothing = std::make_shared<const std::string>();
-    body_ = answer.body ? std::move(answer.body) : kNothing;
+    body_ = answer.body ? answer.body : kNothing;
     const auto reason = http::obsolete_reason(static_cast<http::status>(answer.status));
     head_ = fmt::format(
         "HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n"

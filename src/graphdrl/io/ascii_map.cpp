@@ -1,5 +1,3 @@
-#include "graphdrl/io/ascii_map.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,22 +5,15 @@
 #include <vector>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
-namespace {
 
-std::vector<std::string_view> split_rows(std::string_view text) {
+GridMap parse_ascii_map(std::string_view text, const std::string& source) {
   std::vector<std::string_view> rows;
   for (Lines lines(text); lines.next();) rows.push_back(lines.line());
   while (!rows.empty() && rows.back().empty()) rows.pop_back();
-  return rows;
-}
-
-}  // namespace
-
-GridMap parse_ascii_map(std::string_view text, const std::string& source) {
-  const std::vector<std::string_view> rows = split_rows(text);
   if (rows.empty()) throw Error({.what = "the map has no rows", .where = source});
   const std::size_t cols = rows.front().size();
   if (rows.size() * std::max<std::size_t>(cols, 1) > std::numeric_limits<NodeId>::max()) {

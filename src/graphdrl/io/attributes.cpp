@@ -3,48 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/map_options.h"
+#include "graphdrl/io/any_map.h"
+#include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr std::array<std::string_view, 4> kCostNames = {"weight", "cost", "length", "distance"};
-constexpr std::array<std::string_view, 2> kPrizeNames = {"prize", "score"};
-constexpr std::array<std::string_view, 2> kLabelNames = {"label", "name"};
-constexpr std::array kPlaceNames = {PlaceNames{"x", "y", ""}, PlaceNames{"lon", "lat", "degrees"},
-                                    PlaceNames{"longitude", "latitude", "degrees"}};
-
 constexpr std::size_t kNamesShown = 8;  // of attributes, in an error's message
 
-char lower(char c) {
-  return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-}
-
 }  // namespace
-
-std::span<const std::string_view> cost_names() {
-  return kCostNames;
-}
-
-std::span<const std::string_view> prize_names() {
-  return kPrizeNames;
-}
-
-std::span<const std::string_view> label_names() {
-  return kLabelNames;
-}
-
-std::span<const PlaceNames> place_names() {
-  return kPlaceNames;
-}
-
-bool same_name(std::string_view one, std::string_view other) {
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
-                    [](char a, char b) { return lower(a) == lower(b); });
-}
 
 std::size_t rank_of(std::string_view name, std::span<const std::string_view> names) {
   const auto found =

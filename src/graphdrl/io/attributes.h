@@ -1,6 +1,7 @@
 // What attributes of nodes and edges mean, by the names that programs give them.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,29 +10,25 @@
 namespace graphdrl {
 
 // The one list of what attributes mean. The first name is the best; case does not count.
-std::span<const std::string_view> cost_names();   // weight, cost, length, distance
-std::span<const std::string_view> prize_names();  // prize, score
-std::span<const std::string_view> label_names();  // label, name
+inline constexpr std::array<std::string_view, 4> kCostNames = {"weight", "cost", "length", "distance"};
+inline constexpr std::array<std::string_view, 2> kPrizeNames = {"prize", "score"};
+inline constexpr std::array<std::string_view, 2> kLabelNames = {"label", "name"};
 struct PlaceNames {
   std::string_view x;
   std::string_view y;
   std::string_view unit;  // empty where the names do not tell it
 };
-std::span<const PlaceNames> place_names();  // x and y; lon and lat; longitude and latitude
+inline constexpr std::array kPlaceNames = {PlaceNames{"x", "y", ""}, PlaceNames{"lon", "lat", "degrees"},
+                                           PlaceNames{"longitude", "latitude", "degrees"}};
 
-// Whether two names differ in case at most.
-bool same_name(std::string_view one, std::string_view other);
 // The place of a name among names; behind the last where it is none of them.
 std::size_t rank_of(std::string_view name, std::span<const std::string_view> names);
 bool is_name_of(std::string_view name, std::span<const std::string_view> names);
 
 // Columns of coordinates: x and y of the first pair of names, of the second …
-inline constexpr std::size_t kPlaceColumns = 6;
+inline constexpr std::size_t kPlaceColumns = 2 * kPlaceNames.size();
 // Which one has this name; kPlaceColumns where none has.
 std::size_t place_column(std::string_view name);
-inline bool is_place_name(std::string_view name) {
-  return place_column(name) < kPlaceColumns;
-}
 
 struct Attribute {
   std::string name;

@@ -1,54 +1,30 @@
-#include "graphdrl/io/dimacs.h"
-
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr int kMostWords = 4;
-
-// The words of a line, and how many there are: at most one more than a line may have.
-struct Words {
-  explicit Words(std::string_view line) {
-    for (line = trimmed(line); !line.empty() && count <= kMostWords; line = trimmed(line)) {
-      const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-      words[count++] = line.substr(0, end);
-      line.remove_prefix(end);
-    }
-  }
-  std::string_view operator[](int i) const { return words[i]; }
-
-  std::array<std::string_view, kMostWords + 1> words;
-  int count = 0;
-};
-
-bool is_dimacs_comment(const Words& words) {
-  return words.count == 0 || words[0] == "c";
+// Goes to the next line that is no comment, `c …`, and gives its words. False after the last.
+bool next_words(Lines& lines, std::vector<std::string_view>& words) {
+  do {
+    if (!lines.next()) return false;
+    words.clear();
+    for (std::string_view rest = trimmed(lines.line()); !rest.empty();) words.push_back(take_word(rest));
+  } while (words.empty() || words[0] == "c");
+  return true;
 }
 
 class DimacsReader {
  public:
   DimacsReader(std::string_view text, const std::string& source)
-      : lines_(text), most_nodes_(static_cast<double>(most_nodes_of(text))), source_(source) {}
+      : lines_(text, source), most_nodes_(static_cast<double>(most_nodes_of(text))), source_(source) {}
 
   GraphMap read() {
-    while (lines_.next()) {
-      const Words words(lines_.line());
-      if (is_dimacs_comment(words)) continue;
-      if (words[0] == "p") {
-        read_problem(words);
-      } else {
-        read_edge(words);
-      }
-    }
+    while (next_words(lines_, words_)) words_[0] == "p" ? read_problem() : read_edge();
     const auto found = static_cast<double>(edges_.size());
     const bool twice = !arcs_ && (2 * found == said_ || found == 2 * said_);
     if (found != said_ && !twice) {
@@ -57,58 +33,51 @@ class DimacsReader {
                    .got = std::to_string(edges_.size()),
                    .where = source_});
     }
-    GraphMap map{.graph = Graph::from_edges(nodes_, edges_, arcs_ ? EdgeKind::kDirected : EdgeKind::kUndirected),
-                 .blocked = std::vector<bool>(nodes_),
-                 .labels = {}};
-    for (NodeId node = 1; node <= nodes_; ++node) map.labels.push_back(std::to_string(node));
-    return map;
+    return {.graph = Graph::from_edges(nodes_, edges_, arcs_ ? EdgeKind::kDirected : EdgeKind::kUndirected),
+            .blocked = std::vector<bool>(nodes_),
+            .labels = labels_from_one(nodes_)};
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
-    throw Error({.what = what,
-                 .expected = expected,
-                 .got = in_quotes(lines_.line()),
-                 .where = fmt::format("{}:{}", source_, lines_.number())});
+  NodeId node(std::size_t word) const {
+    const auto number = parse_whole(words_[word], 1, nodes_);
+    if (!number) lines_.fail("bad number", fmt::format("nodes from 1 to {}", nodes_));
+    return static_cast<NodeId>(*number) - 1;
   }
 
-  // A whole number from `least` to `most`.
-  double whole(std::string_view word, double least, double most, const std::string& expected) const {
-    const auto number = parse_number(word);
-    if (!number || *number < least || *number > most || *number != std::floor(*number)) fail("bad number", expected);
-    return *number;
-  }
-
-  void read_problem(const Words& words) {
-    if (nodes_ != 0) fail("a second problem", "one line `p …`");
-    const bool known = words[1] == "edge" || words[1] == "col" || words[1] == "sp";
-    if (words.count != 4 || !known) fail("bad problem", "p edge, p col or p sp, and the numbers of nodes and edges");
-    arcs_ = words[1] == "sp";
-    nodes_ = static_cast<NodeId>(whole(
-        words[2], 1, most_nodes_, fmt::format("a number of nodes from 1 to {}, for a file of this size", most_nodes_)));
-    said_ = whole(words[3], 0, 1e18, "a number of edges");
-  }
-
-  void read_edge(const Words& words) {
-    if (nodes_ == 0) fail("no problem before the first edge", "a line `p …`");
-    if (words[0] != (arcs_ ? "a" : "e") || words.count != (arcs_ ? 4 : 3)) {
-      fail("strange line", arcs_ ? "an arc `a U V COST`" : "an edge `e U V`");
+  void read_problem() {
+    if (nodes_ != 0) lines_.fail("a second problem", "one line `p …`");
+    const std::string_view kind = words_.size() == 4 ? words_[1] : "";
+    if (kind != "edge" && kind != "col" && kind != "sp") {
+      lines_.fail("bad problem", "p edge, p col or p sp, and the numbers of nodes and edges");
     }
-    const std::string nodes = fmt::format("nodes from 1 to {}", nodes_);
-    const auto from = static_cast<NodeId>(whole(words[1], 1, nodes_, nodes)) - 1;
-    const auto to = static_cast<NodeId>(whole(words[2], 1, nodes_, nodes)) - 1;
-    double cost = 1;
-    if (arcs_) {
-      const auto number = parse_number(words[3]);
-      if (!number || *number < 0) fail("bad cost", "a number from 0 up");
-      cost = *number;
+    arcs_ = kind == "sp";
+    const auto nodes = parse_whole(words_[2], 1, most_nodes_);
+    const auto edges = parse_whole(words_[3], 0, 1e18);
+    if (!nodes) {
+      lines_.fail("bad number", fmt::format("a number of nodes from 1 to {}, for a file of this size", most_nodes_));
     }
-    edges_.push_back({from, to, cost});
+    if (!edges) lines_.fail("bad number", "a number of edges");
+    nodes_ = static_cast<NodeId>(*nodes);
+    said_ = *edges;
+  }
+
+  void read_edge() {
+    if (nodes_ == 0) lines_.fail("no problem before the first edge", "a line `p …`");
+    if (words_[0] != (arcs_ ? "a" : "e") || words_.size() != (arcs_ ? 4 : 3)) {
+      lines_.fail("strange line", arcs_ ? "an arc `a U V COST`" : "an edge `e U V`");
+    }
+    const NodeId from = node(1);
+    const NodeId to = node(2);
+    const auto cost = arcs_ ? parse_number(words_[3]) : 1.0;
+    if (!cost || *cost < 0) lines_.fail("bad cost", "a number from 0 up");
+    edges_.push_back({from, to, *cost});
   }
 
   Lines lines_;
   double most_nodes_;
   const std::string& source_;
+  std::vector<std::string_view> words_;  // of the line
   bool arcs_ = false;
   NodeId nodes_ = 0;
   double said_ = 0;
@@ -119,12 +88,8 @@ class DimacsReader {
 
 bool is_dimacs(std::string_view text) {
   Lines lines(text);
-  while (lines.next()) {
-    const Words words(lines.line());
-    if (is_dimacs_comment(words)) continue;
-    return words[0] == "p" && words.count == 4;
-  }
-  return false;
+  std::vector<std::string_view> words;
+  return next_words(lines, words) && words[0] == "p" && words.size() == 4;
 }
 
 GraphMap parse_dimacs(std::string_view text, const std::string& source) {

@@ -1,21 +1,20 @@
-#include "graphdrl/io/dot.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <utility>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr int kMostGraphsDeep = 100;            // graphs in each other
-constexpr std::int64_t kMostEdgesPerByte = 50;  // { a b } -> { c d } stands for four edges
+constexpr int kMostGraphsDeep = 100;  // graphs in each other
 
 bool is_letter(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c < 0;  // bytes of UTF-8 too
@@ -24,11 +23,10 @@ bool is_letter(char c) {
 // The words and signs of a text in DOT [graphviz.org/doc/info/lang.html].
 class DotTokens {
  public:
-  enum class Kind { kId, kSign, kEnd };
-
   DotTokens(std::string_view text, const std::string& source) : text_(text), source_(source) { next(); }
 
-  Kind kind() const { return kind_; }
+  bool is_end() const { return kind_ == Kind::kEnd; }
+  bool is_id() const { return kind_ == Kind::kId; }
   // Of an id without its quotes, two backslashes for one; a sign.
   const std::string& word() const { return word_; }
   bool is(std::string_view sign) const { return kind_ == Kind::kSign && word_ == sign; }
@@ -37,6 +35,10 @@ class DotTokens {
     return kind_ == Kind::kId && !quoted_ && same_name(word_, keyword);
   }
   bool is_edge() const { return is("->") || is("--"); }
+
+  // Whether it is this one; then goes on to the next.
+  bool take(std::string_view sign) { return go_on_if(is(sign)); }
+  bool take_keyword(std::string_view keyword) { return go_on_if(is_keyword(keyword)); }
 
   void next() {
     skip_space();
@@ -60,16 +62,20 @@ class DotTokens {
     }
   }
 
-  std::string place() const {
-    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(begin_);
-    return fmt::format("{}:{}", source_, 1 + std::count(text_.begin(), end, '\n'));
-  }
+  std::string place() const { return place_in(text_, begin_, source_); }
   [[noreturn]] void fail(const std::string& what, const std::string& expected) const {
-    const std::string got = kind_ == Kind::kEnd ? "the end of the file" : in_quotes(word_);
+    const std::string got = is_end() ? "the end of the file" : in_quotes(word_);
     throw Error({.what = what, .expected = expected, .got = got, .where = place()});
   }
 
  private:
+  enum class Kind { kId, kSign, kEnd };
+
+  bool go_on_if(bool found) {
+    if (found) next();
+    return found;
+  }
+
   bool starts_number() const {
     const std::string_view rest = text_.substr(at_ + (text_[at_] == '-' ? 1 : 0), 2);
     const auto digit = [&](std::size_t i) { return i < rest.size() && rest[i] >= '0' && rest[i] <= '9'; };
@@ -157,88 +163,87 @@ class DotReader {
  public:
   DotReader(std::string_view text, const std::string& source, const MapOptions& options)
       : tokens_(text, source),
-        most_edges_(kMostEdgesPerByte * std::ssize(text)),
-        note_(options.note),
-        builder_(options, [this] { return tokens_.place(); }) {}
+        builder_(
+            options, [this] { return tokens_.place(); }, std::ssize(text)) {}
 
   GraphMap read() {
-    if (tokens_.is_keyword("strict")) tokens_.next();
-    directed_ = tokens_.is_keyword("digraph");
-    if (!directed_ && !tokens_.is_keyword("graph")) tokens_.fail("not a graph in DOT", "graph or digraph");
-    tokens_.next();
-    if (tokens_.kind() == DotTokens::Kind::kId) tokens_.next();
+    tokens_.take_keyword("strict");
+    directed_ = tokens_.take_keyword("digraph");
+    if (!directed_ && !tokens_.take_keyword("graph")) tokens_.fail("not a graph in DOT", "graph or digraph");
+    if (tokens_.is_id()) tokens_.next();
     Scope scope;
     read_body(scope);
-    if (tokens_.kind() != DotTokens::Kind::kEnd) tokens_.fail("more than one graph", "the end of the file");
+    if (!tokens_.is_end()) tokens_.fail("more than one graph", "the end of the file");
     if (directed_) take_start();
     return builder_.build();
   }
 
  private:
   using Attributes = std::vector<Attribute>;
-  // A graph: its defaults, the nodes that it names, and the graphs within it.
+  // A graph: its own defaults, the nodes that it names, and the graphs within it.
   struct Scope {
+    const Scope* around = nullptr;
     Attributes of_nodes;
     Attributes of_edges;
     std::vector<NodeId> nodes;
     std::map<std::string, Scope> subgraphs;  // by name
   };
 
-  void expect(std::string_view sign, const std::string& what) {
-    if (!tokens_.is(sign)) tokens_.fail(what, fmt::format("'{}'", sign));
-    tokens_.next();
+  // The defaults of a graph and of those around it, the outermost ones first.
+  static Attributes defaults(const Scope& scope, Attributes Scope::*kind) {
+    Attributes all = scope.around == nullptr ? Attributes() : defaults(*scope.around, kind);
+    all.insert(all.end(), (scope.*kind).begin(), (scope.*kind).end());
+    return all;
   }
 
   std::string take_id(const std::string& what) {
-    if (tokens_.kind() != DotTokens::Kind::kId) tokens_.fail(what, "a name, a number or a text in quotes");
+    if (!tokens_.is_id()) tokens_.fail(what, "a name, a number or a text in quotes");
     std::string word = unescaped(tokens_.word());
     tokens_.next();
     return word;
   }
 
   void read_body(Scope& scope) {
-    expect("{", "no graph");
+    if (!tokens_.take("{")) tokens_.fail("no graph", "'{'");
     if (++depth_ > kMostGraphsDeep)
       tokens_.fail("graphs within graphs, too deep", fmt::format("at most {}", kMostGraphsDeep));
-    while (!tokens_.is("}")) {
+    while (!tokens_.take("}")) {
       read_statement(scope);
-      if (tokens_.is(";") || tokens_.is(",")) tokens_.next();
+      if (!tokens_.take(";")) tokens_.take(",");
     }
     --depth_;
-    tokens_.next();
   }
 
   void read_statement(Scope& scope) {
-    if (tokens_.is_keyword("graph") || tokens_.is_keyword("node") || tokens_.is_keyword("edge")) {
-      const bool nodes = tokens_.is_keyword("node");
-      const bool edges = tokens_.is_keyword("edge");
-      tokens_.next();
-      Attributes of_graph;
-      read_attributes(nodes ? scope.of_nodes : edges ? scope.of_edges : of_graph);
-      for (const Attribute& attribute : of_graph) set_graph(attribute);
-      return;
-    }
-    const bool graph = tokens_.is("{") || tokens_.is_keyword("subgraph");
-    std::vector<NodeId> from;
-    if (graph) {
-      from = read_subgraph(scope);
+    if (tokens_.take_keyword("graph")) {
+      for (const Attribute& attribute : read_attributes()) set_graph(attribute);
+    } else if (tokens_.take_keyword("node")) {
+      set_defaults(scope.of_nodes);
+    } else if (tokens_.take_keyword("edge")) {
+      set_defaults(scope.of_edges);
+    } else if (at_subgraph()) {
+      std::vector<NodeId> nodes = read_subgraph(scope);
+      if (tokens_.is_edge()) return read_edges(std::move(nodes), scope);
+      read_attributes();  // of the graph itself
     } else {
       const std::string name = take_id("not a node, an edge or an attribute");
-      if (tokens_.is("=")) {
-        tokens_.next();
-        set_graph({name, take_id("an attribute without a value")});
-        return;
-      }
-      from = read_nodes(name, scope);
+      if (tokens_.take("=")) return set_graph({name, take_id("an attribute without a value")});
+      std::vector<NodeId> nodes = read_nodes(name, scope);
+      if (tokens_.is_edge()) return read_edges(std::move(nodes), scope);
+      const Attributes attributes = read_attributes();
+      for (const NodeId node : nodes) set_node(node, attributes);
     }
-    if (tokens_.is_edge()) {
-      read_edges(std::move(from), scope);
-      return;
+  }
+
+  bool at_subgraph() const { return tokens_.is("{") || tokens_.is_keyword("subgraph"); }
+
+  // One of the same name takes the place of the one before.
+  void set_defaults(Attributes& own) {
+    for (Attribute& attribute : read_attributes()) {
+      builder_.spend(std::ssize(own));
+      std::erase_if(own, [&](const Attribute& before) { return before.name == attribute.name; });
+      own.push_back(std::move(attribute));
     }
-    Attributes attributes;
-    read_attributes(attributes);
-    if (graph) return;  // of the graph itself
-    for (const NodeId node : from) set_node(node, attributes);
   }
 
   void read_edges(std::vector<NodeId> from, Scope& scope) {
@@ -248,16 +253,15 @@ class DotReader {
         tokens_.fail("the wrong sign of an edge", directed_ ? "'->' in a digraph" : "'--' in a graph");
       }
       tokens_.next();
-      const bool graph = tokens_.is("{") || tokens_.is_keyword("subgraph");
-      std::vector<NodeId> to = graph ? read_subgraph(scope) : read_nodes(take_id("an edge to nowhere"), scope);
-      spend(std::ssize(from) * std::ssize(to));
+      std::vector<NodeId> to = at_subgraph() ? read_subgraph(scope) : read_nodes(take_id("an edge to nowhere"), scope);
+      builder_.spend(std::ssize(from) * std::ssize(to));
       for (const NodeId one : from) {
         for (const NodeId other : to) edges.emplace_back(one, other);
       }
       from = std::move(to);
     }
-    Attributes attributes = scope.of_edges;
-    read_attributes(attributes);
+    Attributes attributes = defaults(scope, &Scope::of_edges);
+    std::ranges::move(read_attributes(), std::back_inserter(attributes));
     for (const auto& [one, other] : edges) {
       builder_.add_edge(one, other, directed_);
       builder_.set_edge(attributes);
@@ -266,30 +270,17 @@ class DotReader {
     }
   }
 
-  void spend(std::int64_t edges) {
-    edges_ += edges;
-    if (edges_ > most_edges_) tokens_.fail("far more edges than a file of this size holds", "fewer");
-  }
-
   // The nodes that it names, each once. A graph named again is the one before, and goes on with its defaults.
   std::vector<NodeId> read_subgraph(Scope& scope) {
     std::string name;
-    if (tokens_.is_keyword("subgraph")) {
-      tokens_.next();
-      if (tokens_.kind() == DotTokens::Kind::kId) name = take_id("");
-    }
+    if (tokens_.take_keyword("subgraph") && tokens_.is_id()) name = take_id("");
     Scope unnamed;
     Scope& inner = name.empty() ? unnamed : scope.subgraphs[name];
-    inner.of_nodes.insert(inner.of_nodes.begin(), scope.of_nodes.begin(), scope.of_nodes.end());
-    inner.of_edges.insert(inner.of_edges.begin(), scope.of_edges.begin(), scope.of_edges.end());
-    const auto nodes_around = std::ssize(scope.of_nodes);
-    const auto edges_around = std::ssize(scope.of_edges);
+    inner.around = &scope;
     read_body(inner);
-    inner.of_nodes.erase(inner.of_nodes.begin(), inner.of_nodes.begin() + nodes_around);
-    inner.of_edges.erase(inner.of_edges.begin(), inner.of_edges.begin() + edges_around);
     std::sort(inner.nodes.begin(), inner.nodes.end());
     inner.nodes.erase(std::unique(inner.nodes.begin(), inner.nodes.end()), inner.nodes.end());
-    spend(std::ssize(inner.nodes));  // a graph may be named again and again
+    builder_.spend(std::ssize(inner.nodes));  // a graph may be named again and again
     scope.nodes.insert(scope.nodes.end(), inner.nodes.begin(), inner.nodes.end());
     return inner.nodes;
   }
@@ -297,10 +288,7 @@ class DotReader {
   // A list of nodes: "a, b:port".
   std::vector<NodeId> read_nodes(const std::string& first, Scope& scope) {
     std::vector<NodeId> nodes = {node_of(first, scope)};
-    while (tokens_.is(",")) {
-      tokens_.next();
-      nodes.push_back(node_of(take_id("not a node after a comma"), scope));
-    }
+    while (tokens_.take(",")) nodes.push_back(node_of(take_id("not a node after a comma"), scope));
     return nodes;
   }
 
@@ -310,32 +298,27 @@ class DotReader {
     const NodeId node = builder_.node_or_new(name);
     if (node == before) {
       if (name.starts_with("__start")) starts_[node] = {};
-      set_node(node, scope.of_nodes);
+      set_node(node, defaults(scope, &Scope::of_nodes));
     }
     scope.nodes.push_back(node);
-    for (int i = 0; i < 2 && tokens_.is(":"); ++i) {
-      tokens_.next();
-      take_id("a port without a name");
-    }
+    for (int i = 0; i < 2 && tokens_.take(":"); ++i) take_id("a port without a name");
     return node;
   }
 
-  void read_attributes(Attributes& attributes) {
-    while (tokens_.is("[")) {
-      tokens_.next();
-      while (!tokens_.is("]")) {
+  Attributes read_attributes() {
+    Attributes attributes;
+    while (tokens_.take("[")) {
+      while (!tokens_.take("]")) {
         Attribute attribute{.name = take_id("not an attribute"), .value = "true"};
-        if (tokens_.is("=")) {
-          tokens_.next();
-          if (tokens_.kind() != DotTokens::Kind::kId) take_id("an attribute without a value");
+        if (tokens_.take("=")) {
           attribute.value = tokens_.word();  // with its escapes
-          tokens_.next();
+          take_id("an attribute without a value");
         }
         attributes.push_back(std::move(attribute));
-        if (tokens_.is(",") || tokens_.is(";")) tokens_.next();
+        if (!tokens_.take(",")) tokens_.take(";");
       }
-      tokens_.next();
     }
+    return attributes;
   }
 
   void set_graph(const Attribute& attribute) {
@@ -372,8 +355,9 @@ class DotReader {
     }
     if (start == kNoNode) return;
     builder_.set_start(start);
-    if (count == 1 || !note_) return;
-    note_(fmt::format("{}: {} starts, of which {} is taken", tokens_.place(), count, in_quotes(builder_.id(start))));
+    const std::string first = in_quotes(builder_.id(start));
+    builder_.note(count == 1 ? fmt::format("`__start` points at {}, the start, and is left out", first)
+                             : fmt::format("{} starts, of which {} is taken", count, first));
   }
 
   // Of a node that may stand for the start.
@@ -384,12 +368,9 @@ class DotReader {
   };
 
   DotTokens tokens_;
-  std::int64_t most_edges_;
-  std::int64_t edges_ = 0;
   bool directed_ = false;
   int depth_ = 0;
   std::map<NodeId, Start> starts_;
-  std::function<void(const std::string&)> note_;
   GraphBuilder builder_;
 };
 
@@ -400,10 +381,9 @@ bool is_dot(std::string_view text) {
   const std::string nowhere;
   try {
     DotTokens tokens(text.substr(0, kLooked), nowhere);
-    if (tokens.is_keyword("strict")) tokens.next();
-    if (!tokens.is_keyword("graph") && !tokens.is_keyword("digraph")) return false;
-    tokens.next();
-    if (tokens.kind() == DotTokens::Kind::kId) tokens.next();
+    tokens.take_keyword("strict");
+    if (!tokens.take_keyword("graph") && !tokens.take_keyword("digraph")) return false;
+    if (tokens.is_id()) tokens.next();
     return tokens.is("{");
   } catch (const Error&) {
     return false;
@@ -421,10 +401,6 @@ std::string dot_quoted(std::string_view text) {
     quoted += c;
   }
   return quoted + '"';
-}
-
-std::string format_dot(const GraphMap& map) {
-  return format_dot(map, {});
 }
 
 std::string format_dot(const GraphMap& map, const NodeColumn& column) {

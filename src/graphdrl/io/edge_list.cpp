@@ -1,27 +1,29 @@
-#include "graphdrl/io/edge_list.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <iterator>
 #include <set>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/csv.h"
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
 
+using namespace std::string_view_literals;
 using Fields = std::vector<std::string>;
 
-constexpr std::array<std::string_view, 4> kSourceNames = {"source", "from", "src", "u"};
-constexpr std::array<std::string_view, 4> kTargetNames = {"target", "to", "dst", "v"};
-constexpr std::array<std::string_view, 2> kDirectionColumns = {"type", "directed"};
+// Columns of nodes. The usual names tell a header; the others are a guess.
+constexpr std::array kSources = {"source"sv, "from"sv, "src"sv, "u"sv, "start"sv, "origin"sv, "tail"sv, "begin"sv};
+constexpr std::array kTargets = {"target"sv, "to"sv, "dst"sv, "v"sv, "end"sv, "destination"sv, "head"sv, "dest"sv};
+constexpr std::size_t kUsualNames = 4;
 // Values of the column `type`, as Gephi writes them, and of the column `directed`.
-constexpr std::array<std::string_view, 4> kOneWay = {"directed", "true", "yes", "1"};
-constexpr std::array<std::string_view, 4> kBothWays = {"undirected", "false", "no", "0"};
+constexpr std::array kOneWay = {"directed"sv, "true"sv, "yes"sv, "1"sv};
+constexpr std::array kBothWays = {"undirected"sv, "false"sv, "no"sv, "0"sv};
 
 // What a dictionary of Python has under the first of these names that it has; empty where it has none.
 std::string_view value_in_dictionary(std::string_view text, std::span<const std::string_view> names) {
@@ -70,15 +72,13 @@ bool differ_in_number(std::string_view one, std::string_view other) {
 
 // Whether these are columns of a table of nodes, as Gephi and `plan --out` write it.
 bool names_nodes(const Fields& names) {
-  constexpr std::array<std::string_view, 3> kIds = {"id", "node", "nodes"};
-  constexpr std::array<std::string_view, 7> kOfNodes = {"label", "name", "step", "x", "lon", "prize", "score"};
-  return column_of(names, kIds) != kNoColumn && column_of(names, kOfNodes) != kNoColumn;
+  return column_of(names, std::array{"id"sv, "node"sv, "nodes"sv}) != kNoColumn &&
+         column_of(names, std::array{"label"sv, "name"sv, "step"sv, "x"sv, "lon"sv, "prize"sv, "score"sv}) != kNoColumn;
 }
 
 bool names_coordinates(const Fields& names) {
-  constexpr std::array<std::string_view, 3> kX = {"x", "lon", "longitude"};
-  constexpr std::array<std::string_view, 3> kY = {"y", "lat", "latitude"};
-  return column_of(names, kX) != kNoColumn && column_of(names, kY) != kNoColumn;
+  return column_of(names, std::array{"x"sv, "lon"sv, "longitude"sv}) != kNoColumn &&
+         column_of(names, std::array{"y"sv, "lat"sv, "latitude"sv}) != kNoColumn;
 }
 
 // Without spaces, signs and the words at the end that tell nothing: "From Node-ID" is "From".
@@ -95,7 +95,7 @@ std::string bare_name(const std::string& name) {
 class EdgeListReader {
  public:
   EdgeListReader(std::string_view text, const std::string& source, const MapOptions& options)
-      : lines_(text), source_(source), options_(options), builder_(options, [this] { return place(); }) {
+      : lines_(text, source), source_(source), options_(options), builder_(options, [this] { return lines_.place(); }) {
     if (options.cost_attribute.empty()) return;
     cost_names_ = {options.cost_attribute};
     cost_name_ = options.cost_attribute;
@@ -119,18 +119,13 @@ class EdgeListReader {
       if (!first || !read_header(fields)) read_edge(fields);
       first = false;
     }
-    if (edges_ == 0) throw Error({.what = "no edges", .where = source_});
-    check_nodes();
+    if (one_way_ + both_ways_ == 0) throw Error({.what = "no edges", .where = source_});
+    if (!named_ && 2 * decimals_ > one_way_ + both_ways_) refuse_table("coordinates");
     if (options_.note) options_.note(description());
     return builder_.build();
   }
 
  private:
-  std::string place() const { return fmt::format("{}:{}", source_, lines_.number()); }
-  [[noreturn]] void fail(const std::string& expected) const {
-    throw Error({.what = "not an edge", .expected = expected, .got = in_quotes(lines_.line()), .where = place()});
-  }
-
   [[noreturn]] void refuse_table(const std::string& of) const {
     throw Error({.what = fmt::format("this looks like a table of {}, not of edges", of),
                  .expected = "two nodes a line; names of columns, source and target, above them if they are",
@@ -140,9 +135,10 @@ class EdgeListReader {
   // Whether these are the names of columns.
   bool read_header(const Fields& fields) {
     columns_ = fields.size();
-    from_ = column_of(fields, kSourceNames);
-    to_ = column_of(fields, kTargetNames);
-    if (from_ == kNoColumn || to_ == kNoColumn) {
+    from_ = column_of(fields, std::span(kSources).first(kUsualNames));
+    to_ = column_of(fields, std::span(kTargets).first(kUsualNames));
+    named_ = from_ != kNoColumn && to_ != kNoColumn;
+    if (!named_) {
       if (names_nodes(fields)) refuse_table("nodes");
       guess_columns(fields);
       if (!may_be_header(fields)) {
@@ -151,8 +147,6 @@ class EdgeListReader {
         return false;
       }
       if (names_coordinates(fields)) refuse_table("coordinates");
-    } else {
-      named_ = true;
     }
     header_ = true;
     cost_ = column_of(fields, cost_names_);
@@ -161,7 +155,7 @@ class EdgeListReader {
       if (column == from_ || column == to_) continue;
       skipped_ += fmt::format("{}{}", skipped_.empty() ? "" : ", ", escaped(fields[column]));
     }
-    direction_ = column_of(fields, kDirectionColumns);
+    direction_ = column_of(fields, std::array{"type"sv, "directed"sv});
     direction_words_ = direction_ != kNoColumn && same_name(fields[direction_], "type") ? 1 : kOneWay.size();
     return true;
   }
@@ -192,33 +186,24 @@ class EdgeListReader {
 
   // By names like the usual ones, or numbered; else the first two.
   void guess_columns(const Fields& names) {
-    from_ = 0;
-    to_ = 1;
-    constexpr std::array<std::string_view, 8> kSources = {"source", "from",   "src",  "u",
-                                                          "start",  "origin", "tail", "begin"};
-    constexpr std::array<std::string_view, 8> kTargets = {"target", "to",          "dst",  "v",
-                                                          "end",    "destination", "head", "dest"};
     Fields bare;
-    std::transform(names.begin(), names.end(), std::back_inserter(bare), bare_name);
-    const int from = column_of(bare, kSources);
-    const int to = column_of(bare, kTargets);
-    if (from != kNoColumn && to != kNoColumn && from != to) {
-      from_ = from;
-      to_ = to;
-      return;
-    }
+    std::ranges::transform(names, std::back_inserter(bare), bare_name);
+    from_ = column_of(bare, kSources);
+    to_ = column_of(bare, kTargets);
+    if (from_ != kNoColumn && to_ != kNoColumn && from_ != to_) return;
+    from_ = 0;
     for (std::size_t i = 0; i + 1 < names.size(); ++i) {
       if (!differ_in_number(names[i], names[i + 1])) continue;
       from_ = static_cast<int>(i);
-      to_ = from_ + 1;
-      return;
+      break;
     }
+    to_ = from_ + 1;
   }
 
   void read_edge(const Fields& fields) {
     const auto count = static_cast<int>(fields.size());
     if (count <= std::max(from_, to_) || fields[from_].empty() || fields[to_].empty()) {
-      fail("two nodes, and a cost where there is one");
+      lines_.fail("not an edge", "two nodes, and a cost where there is one");
     }
     const bool dictionary = fields.back().starts_with('{');
     check_count(fields, dictionary);
@@ -227,7 +212,6 @@ class EdgeListReader {
     const bool one_way = leads_one_way(fields);
     builder_.add_edge(from, to, one_way);
     ++(one_way ? one_way_ : both_ways_);
-    ++edges_;
     if (is_decimal(fields[from_]) && is_decimal(fields[to_])) ++decimals_;
     std::string cost = cost_ != kNoColumn && cost_ < count ? fields[cost_] : std::string();
     if (dictionary) cost = value_in_dictionary(fields.back(), cost_names_);
@@ -245,7 +229,7 @@ class EdgeListReader {
     std::size_t count = fields.size();
     while (count > 0 && fields[count - 1].empty()) --count;
     if (header_ ? count > columns_ : !dictionary && count > 3 && count != columns_) {
-      fail(fmt::format("{} fields, as in the first line", columns_));
+      lines_.fail("not an edge", fmt::format("{} fields, as in the first line", columns_));
     }
   }
 
@@ -258,15 +242,11 @@ class EdgeListReader {
     return directed_;
   }
 
-  void check_nodes() const {
-    if (!named_ && 2 * decimals_ > edges_) refuse_table("coordinates");
-  }
-
   // What was guessed.
   std::string description() const {
     const std::string between = separator_ == ' '    ? "spaces"
                                 : separator_ == '\t' ? "tabs"
-                                                     : fmt::format("'{}'", escaped({&separator_, 1}));
+                                                     : in_quotes({&separator_, 1});
     std::string cost = header_ ? fmt::format("column {} is the cost", in_quotes(cost_name_in_file_))
                                : std::string("the third field is the cost");
     if (!costs_) cost = "every cost 1";
@@ -294,11 +274,10 @@ class EdgeListReader {
   std::string_view cost_name_ = "cost";  // for the builder
   std::string cost_name_in_file_;
   std::string skipped_;  // names of columns where none is the cost
-  std::vector<std::string_view> cost_names_ = {cost_names().begin(), cost_names().end()};
+  std::vector<std::string_view> cost_names_ = {kCostNames.begin(), kCostNames.end()};
   bool directed_ = false;  // a comment says so
   bool decimal_commas_ = false;
   bool costs_ = false;
-  std::int64_t edges_ = 0;
   std::int64_t one_way_ = 0;
   std::int64_t both_ways_ = 0;
   std::int64_t decimals_ = 0;  // edges between numbers with a point

@@ -1,20 +1,44 @@
-// Whole files in and out.
+// Whole files in and out. Everything that the programs write goes through here.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 
+#include "graphdrl/io/file_lock.h"
+
 namespace graphdrl {
 
 // The bytes of a file. Throws Error when it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 
-// Replaces `path` with `content`, or leaves what was there: written beside it, synced, renamed. A link is followed.
-// Throws Error, also where something stands there that is no file.
+// Replaces `path` with `content`, or leaves what was there: written beside it under a random name, with the mode of
+// what it replaces, synced, renamed, and the folder synced. Once it returns, a power cut takes nothing of it. A link is
+// followed. The first write into a folder removes what writers left there that were killed. Throws Error, also where
+// something stands there that is no file, and MachineError where the disk refuses.
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+// The same, and keeps what was there under the name `previous`, in the same folder. At any moment one of both is whole.
+void write_file_and_keep(const std::filesystem::path& path, std::string_view content,
+                         const std::filesystem::path& previous);
 
 // Creates `folder` and its parents where missing, and makes sure that files can be written there. Throws Error.
 void prepare_folder(const std::filesystem::path& folder);
+
+// A file that grows. Each text is in it whole, or not at all; sync() makes sure that a power cut takes none of them.
+class AppendedFile {
+ public:
+  // Throws Error, as do the others.
+  explicit AppendedFile(std::filesystem::path path);
+  AppendedFile(AppendedFile&&) = default;
+
+  void append(std::string_view text);
+  void sync();
+
+ private:
+  std::filesystem::path path_;
+  Descriptor file_;
+  std::int64_t size_ = 0;
+};
 
 }  // namespace graphdrl

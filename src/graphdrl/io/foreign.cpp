@@ -1,10 +1,7 @@
-#include "graphdrl/io/foreign.h"
-
 #include <algorithm>
-#include <array>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/csv.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
@@ -20,33 +17,33 @@ struct Foreign {
 
 constexpr Foreign kScenario = {"", "a scenario of MovingAI, a list of starts and goals",
                                "the map that its second column names; --start takes a start from the scenario"};
-constexpr std::array kForeign = {
-    Foreign{"%%MatrixMarket", "a matrix of Matrix Market",
-            "an edge list or GraphML, as networkx writes of what scipy.io.mmread reads"},
-    Foreign{"LEDA.GRAPH", "a graph of LEDA", "GraphML, GML, DOT or an edge list"},
-    Foreign{">>graph6<<", "a graph in graph6", "GraphML, as networkx writes of what read_graph6 reads"},
-    Foreign{"%PDF", "a PDF document", "the map as a PNG picture"},
-    Foreign{"GIF8", "a GIF picture", "a PNG picture"},
-    Foreign{"\xFF\xD8\xFF", "a JPEG picture", "a PNG picture"},
-    Foreign{"PK\x03\x04", "a ZIP archive or a spreadsheet", "the file in it, or the table saved as CSV"},
-    Foreign{"<", "XML of another kind", "GraphML"},
+constexpr Foreign kForeign[] = {
+    {"%%MatrixMarket", "a matrix of Matrix Market",
+     "an edge list or GraphML, as networkx writes of what scipy.io.mmread reads"},
+    {"LEDA.GRAPH", "a graph of LEDA", "GraphML, GML, DOT or an edge list"},
+    {">>graph6<<", "a graph in graph6", "GraphML, as networkx writes of what read_graph6 reads"},
+    {"%PDF", "a PDF document", "the map as a PNG picture"},
+    {"GIF8", "a GIF picture", "a PNG picture"},
+    {"\xFF\xD8\xFF", "a JPEG picture", "a PNG picture"},
+    {"<", "XML of another kind", "GraphML"},
 };
 
-// "version 1", then nine fields a line: bucket, map, its size, start, goal, length.
+// "version 1", then nine fields a line: bucket, map, its size, start, goal, length. The map is no number.
 bool is_scenario(std::string_view text) {
   Lines lines(text);
   if (!lines.next()) return false;
   if (trimmed(lines.line()).starts_with("version") && !lines.next()) return false;
   const auto fields = split_fields(lines.line(), separator_of(lines.line()));
-  return fields.size() == 9 && std::all_of(fields.begin() + 2, fields.end(),
-                                           [](const std::string& field) { return parse_number(field).has_value(); });
+  const auto is_number = [](const std::string& field) { return parse_number(field).has_value(); };
+  return fields.size() == 9 && !is_number(fields[1]) && std::all_of(fields.begin() + 2, fields.end(), is_number);
 }
 
 const Foreign* foreign_of(std::string_view text) {
   if (is_scenario(text)) return &kScenario;
-  const auto* const found = std::find_if(kForeign.begin(), kForeign.end(),
-                                         [&](const Foreign& foreign) { return text.starts_with(foreign.begin); });
-  return found == kForeign.end() ? nullptr : found;
+  for (const Foreign& foreign : kForeign) {
+    if (text.starts_with(foreign.begin)) return &foreign;
+  }
+  return nullptr;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
-#include "graphdrl/io/gexf.h"
-
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/xml.h"
 
 namespace graphdrl {
@@ -9,7 +8,9 @@ namespace {
 class GexfReader {
  public:
   GexfReader(std::string_view text, const std::string& source, const MapOptions& options)
-      : file_(text, source), builder_(options, [this] { return file_.place(at_); }) {}
+      : file_(text, source),
+        builder_(
+            options, [this] { return file_.place(at_); }, std::ssize(text)) {}
 
   GraphMap read() {
     const pugi::xml_node root = file_.root("gexf");

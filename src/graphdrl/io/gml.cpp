@@ -1,5 +1,3 @@
-#include "graphdrl/io/gml.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +6,8 @@
 #include <utility>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/entities.h"
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/io/utf8.h"
 
@@ -52,21 +50,16 @@ class GmlReader {
     std::vector<Attribute> attributes;
   };
 
-  std::string place() const {
-    return fmt::format("{}:{}", source_,
-                       1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n'));
-  }
+  std::string place() const { return place_in(text_, at_, source_); }
   [[noreturn]] void fail(const std::string& what, const std::string& expected, std::string_view got = {}) const {
     throw Error({.what = what, .expected = expected, .got = got.empty() ? "" : in_quotes(got), .where = place()});
   }
 
   // Lines whose first character is '#' are comments.
   void skip_space() {
-    while (at_ < text_.size()) {
-      const std::size_t found = text_.find_first_not_of(kBlanks, at_);
-      at_ = std::min(found, text_.size());
-      const bool comment = at_ < text_.size() && text_[at_] == '#';
-      if (!comment) return;
+    for (;;) {
+      at_ = std::min(text_.find_first_not_of(kBlanks, at_), text_.size());
+      if (!text_.substr(at_).starts_with('#')) return;
       at_ = std::min(text_.find('\n', at_), text_.size());
     }
   }
@@ -125,16 +118,8 @@ class GmlReader {
       value();
       return;
     }
-    const int outside = depth_;
     enter_list("");
-    while (depth_ > outside) {
-      if (!next_key()) continue;
-      if (at_list()) {
-        enter_list("");
-      } else {
-        value();
-      }
-    }
+    while (next_key()) skip_value();
   }
 
   void read_graph() {
@@ -155,23 +140,17 @@ class GmlReader {
   }
 
   // The attributes of a node or an edge, those of the list `graphics` among them.
-  std::vector<Attribute> read_attributes(std::string_view kind) {
-    std::vector<Attribute> attributes;
-    const int outside = depth_;
-    enter_list(kind);
-    while (depth_ > outside) {
-      const auto key = next_key();
-      if (!key) continue;
+  void read_attributes(std::string_view list, bool of_node, std::vector<Attribute>& attributes) {
+    enter_list(list);
+    while (const auto key = next_key()) {
       if (!at_list()) {
-        std::string name(*key);
-        attributes.push_back({std::move(name), value()});
-      } else if (same_name(*key, "graphics") && kind == "node") {
-        enter_list(*key);
+        attributes.push_back({std::string(*key), value()});
+      } else if (of_node && same_name(*key, "graphics")) {
+        read_attributes(*key, of_node, attributes);
       } else {
         skip_value();
       }
     }
-    return attributes;
   }
 
   // Takes an attribute out. Throws Error where there is none.
@@ -186,13 +165,15 @@ class GmlReader {
   }
 
   void read_node() {
-    std::vector<Attribute> attributes = read_attributes("node");
+    std::vector<Attribute> attributes;
+    read_attributes("node", /*of_node=*/true, attributes);
     const NodeId node = builder_.add_node(take(attributes, "id", "node"));
     builder_.set_node(node, attributes);
   }
 
   void read_edge() {
-    std::vector<Attribute> attributes = read_attributes("edge");
+    std::vector<Attribute> attributes;
+    read_attributes("edge", /*of_node=*/false, attributes);
     std::string from = take(attributes, "source", "edge");
     std::string to = take(attributes, "target", "edge");
     edges_.push_back({at_, std::move(from), std::move(to), std::move(attributes)});

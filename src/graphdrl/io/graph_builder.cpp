@@ -17,6 +17,9 @@ namespace {
 constexpr std::string_view kBlockedName = "blocked";
 constexpr std::string_view kEdgeLabelName = "label";
 
+constexpr std::int64_t kMostItemsPerByte = 50;  // { a b } -> { c d } stands for four edges
+constexpr std::int64_t kFreeAttributes = 4;     // of a node or an edge: these are limited themselves
+
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // The value of a node in a column that is as long as it must be.
@@ -26,15 +29,11 @@ auto at(std::vector<Value>& column, NodeId node, Value fallback) -> decltype(col
   return column[node];
 }
 
+// left_out: [N], no shorter than the column.
 template <typename Value>
 void erase_where(std::vector<Value>& column, const std::vector<bool>& left_out) {
-  std::size_t to = 0;
-  for (std::size_t from = 0; from < column.size(); ++from) {
-    if (from < left_out.size() && left_out[from]) continue;
-    if (to != from) column[to] = std::move(column[from]);
-    ++to;
-  }
-  column.resize(to);
+  std::size_t node = 0;
+  std::erase_if(column, [&](const auto& /*value*/) { return left_out[node++]; });
 }
 
 }  // namespace
@@ -44,11 +43,24 @@ std::int64_t most_nodes_of(std::string_view text) {
   return std::min<std::int64_t>(std::ssize(text) + kWithoutEdges, std::numeric_limits<NodeId>::max());
 }
 
-GraphBuilder::GraphBuilder(const MapOptions& options, std::function<std::string()> place)
-    : costs_(options.cost_attribute, cost_names()),
-      prizes_(options.prize_attribute, prize_names()),
+std::vector<std::string> labels_from_one(NodeId count) {
+  std::vector<std::string> labels;
+  for (NodeId node = 1; node <= count; ++node) labels.push_back(std::to_string(node));
+  return labels;
+}
+
+GraphBuilder::GraphBuilder(const MapOptions& options, std::function<std::string()> place, std::ptrdiff_t text_bytes)
+    : costs_(options.cost_attribute, kCostNames),
+      prizes_(options.prize_attribute, kPrizeNames),
       note_(options.note),
-      place_(std::move(place)) {}
+      place_(std::move(place)),
+      items_left_(text_bytes < 0 ? std::numeric_limits<std::int64_t>::max() : kMostItemsPerByte * text_bytes) {}
+
+void GraphBuilder::spend(std::int64_t items) {
+  items_left_ -= items;
+  if (items_left_ >= 0) return;
+  throw Error({.what = "far more edges or attributes than a file of this size holds", .where = place_()});
+}
 
 NodeId GraphBuilder::add_node(std::string_view id) {
   if (!ids_.add(id)) {
@@ -66,8 +78,8 @@ NodeId GraphBuilder::node(std::string_view id) const {
 }
 
 NodeId GraphBuilder::node_or_new(std::string_view id) {
-  if (ids_.add(id)) return ids_.count() - 1;
-  return ids_.find(id);
+  const NodeId found = ids_.find(id);
+  return found == kNoNode ? add_node(id) : found;
 }
 
 void GraphBuilder::leave_out(NodeId node) {
@@ -79,21 +91,9 @@ void GraphBuilder::add_edge(NodeId from, NodeId to, bool one_way) {
   last_->edges.push_back({from, to, 1});
 }
 
-void GraphBuilder::direct_all() {
-  directed_ = true;
-  if (one_way_.edges.empty()) std::swap(one_way_, both_ways_);
-  for (std::size_t i = 0; i < both_ways_.edges.size(); ++i) append(one_way_, both_ways_.edges[i], both_ways_.label(i));
-  both_ways_ = {};
-}
-
-void GraphBuilder::clear_edges() {
-  both_ways_ = {};
-  one_way_ = {};
-}
-
-void GraphBuilder::append(EdgeList& list, const Edge& edge, std::string label) {
-  list.edges.push_back(edge);
-  if (!label.empty()) at(list.labels, static_cast<NodeId>(list.edges.size() - 1), std::string()) = std::move(label);
+void GraphBuilder::EdgeList::add(const Edge& edge, std::string label) {
+  edges.push_back(edge);
+  if (!label.empty()) at(labels, static_cast<NodeId>(edges.size() - 1), std::string()) = std::move(label);
 }
 
 double GraphBuilder::number(const Attribute& attribute, bool may_be_negative) const {
@@ -106,15 +106,17 @@ double GraphBuilder::number(const Attribute& attribute, bool may_be_negative) co
 }
 
 bool GraphBuilder::uses_of_node(std::string_view name) const {
-  return prizes_.knows(name) || is_name_of(name, label_names()) || is_place_name(name) || same_name(name, kBlockedName);
+  return prizes_.knows(name) || is_name_of(name, kLabelNames) || place_column(name) < kPlaceColumns ||
+         same_name(name, kBlockedName);
 }
 
 void GraphBuilder::set_node(NodeId node, std::span<const Attribute> attributes) {
+  spend(std::max<std::int64_t>(0, std::ssize(attributes) - kFreeAttributes));
   if (const Attribute* const prize = prizes_.best(attributes)) {
     at(prize_, node, 1.0) = number(*prize, /*may_be_negative=*/false);
   }
   for (const Attribute& attribute : attributes) {
-    if (const std::size_t rank = rank_of(attribute.name, label_names()); rank < label_names().size()) {
+    if (const std::size_t rank = rank_of(attribute.name, kLabelNames); rank < kLabelNames.size()) {
       std::string& label = at(label_, node, std::string());
       if (label.empty() || rank == 0) label = attribute.value;
     } else if (const std::size_t column = place_column(attribute.name); column < kPlaceColumns) {
@@ -137,6 +139,7 @@ void GraphBuilder::set_node(NodeId node, std::string_view name, std::string_view
 }
 
 void GraphBuilder::set_edge(std::span<const Attribute> attributes) {
+  spend(std::max<std::int64_t>(0, std::ssize(attributes) - kFreeAttributes));
   const Attribute* const cost = costs_.best(attributes);
   if (cost != nullptr) last_->edges.back().cost = number(*cost, /*may_be_negative=*/false);
   for (const Attribute& attribute : attributes) {
@@ -169,7 +172,7 @@ void GraphBuilder::drop_left_out() {
     for (std::size_t i = 0; i < all.edges.size(); ++i) {
       const Edge& edge = all.edges[i];
       if (left_out_[edge.a] || left_out_[edge.b]) continue;
-      append(*list, {number[edge.a], number[edge.b], edge.cost}, all.label(i));
+      list->add({number[edge.a], number[edge.b], edge.cost}, all.label(i));
     }
   }
   if (start_ != kNoNode) start_ = number[start_];
@@ -193,10 +196,10 @@ std::vector<std::string> GraphBuilder::take_labels() {
 
 Places GraphBuilder::take_places() {
   NodeId most = 0;
-  for (std::size_t kind = 0; kind < place_names().size(); ++kind) {
+  for (std::size_t kind = 0; kind < kPlaceNames.size(); ++kind) {
     const std::vector<double>& x = places_[2 * kind];
     const std::vector<double>& y = places_[2 * kind + 1];
-    Places places{.points = {}, .unit = unit_.empty() ? std::string(place_names()[kind].unit) : unit_};
+    Places places{.points = {}, .unit = unit_.empty() ? std::string(kPlaceNames[kind].unit) : unit_};
     for (std::size_t node = 0; node < std::min(x.size(), y.size()); ++node) {
       if (!std::isnan(x[node]) && !std::isnan(y[node])) places.points.push_back({x[node], y[node]});
     }
@@ -214,8 +217,8 @@ GraphBuilder::EdgeList GraphBuilder::take_edges() {
   if (!directed_) return std::move(both_ways_);
   for (std::size_t i = 0; i < both_ways_.edges.size(); ++i) {
     const Edge& edge = both_ways_.edges[i];
-    append(one_way_, edge, both_ways_.label(i));
-    if (edge.a != edge.b) append(one_way_, {edge.b, edge.a, edge.cost}, both_ways_.label(i));
+    one_way_.add(edge, both_ways_.label(i));
+    if (edge.a != edge.b) one_way_.add({edge.b, edge.a, edge.cost}, both_ways_.label(i));
   }
   return std::move(one_way_);
 }

@@ -10,10 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "graphdrl/io/any_map.h"
 #include "graphdrl/io/attributes.h"
-#include "graphdrl/io/map_options.h"
 #include "graphdrl/io/node_ids.h"
-#include "graphdrl/io/node_link.h"
 
 namespace graphdrl {
 
@@ -21,11 +20,18 @@ namespace graphdrl {
 // without edges.
 std::int64_t most_nodes_of(std::string_view text);
 
+// "1" to "N".
+std::vector<std::string> labels_from_one(NodeId count);
+
 // Makes a graph of what a file says, in any order but nodes before their edges.
 class GraphBuilder {
  public:
-  // place: where in the file the reader is, for errors.
-  GraphBuilder(const MapOptions& options, std::function<std::string()> place);
+  // place: where in the file the reader is, for errors. text_bytes: of a format in which few bytes may stand for many
+  // edges and attributes, by lists of nodes and by defaults: limits these.
+  GraphBuilder(const MapOptions& options, std::function<std::string()> place, std::ptrdiff_t text_bytes = -1);
+
+  // Counts edges, or attributes. Throws Error where they are far more than a file of this size holds.
+  void spend(std::int64_t items);
 
   // Throws Error where a node has this id already.
   NodeId add_node(std::string_view id);
@@ -40,9 +46,12 @@ class GraphBuilder {
 
   // One edge that leads one way makes the graph directed; the others lead both ways then.
   void add_edge(NodeId from, NodeId to, bool one_way);
-  // Every edge leads one way, those before too.
-  void direct_all();
-  void clear_edges();
+  // Makes the graph directed. REQUIRES: no edge was added as one that leads one way; all lead one way now.
+  void direct_all() {
+    directed_ = true;
+    std::swap(one_way_, both_ways_);
+  }
+  void clear_edges() { both_ways_ = one_way_ = {}; }
 
   // What the attributes of a node, or of the edge added last, say. Of several names for one thing the best one counts;
   // other names are skipped. Throws Error on a cost, a prize or a coordinate that is no number, or is negative where it
@@ -57,7 +66,10 @@ class GraphBuilder {
   void set_unit(std::string_view unit) { unit_ = unit; }  // of the coordinates
   void set_start(NodeId node) { start_ = node; }          // where the walk asked for begins
 
-  // The graph. Coordinates are of one kind [place_names()], the first that every node has. Labels are the attribute
+  // Tells options.note, with the place.
+  void note(const std::string& text) const;
+
+  // The graph. Coordinates are of one kind [kPlaceNames], the first that every node has. Labels are the attribute
   // `label` or `name`, where every node has one and no two are the same; else ids. Throws Error where there is no free
   // node, and where nothing has the attribute asked for.
   GraphMap build();
@@ -68,12 +80,11 @@ class GraphBuilder {
     std::vector<std::string> labels;  // as many as the last edge that has one
 
     std::string label(std::size_t edge) const { return edge < labels.size() ? labels[edge] : std::string(); }
+    void add(const Edge& edge, std::string label);
   };
 
   double number(const Attribute& attribute, bool may_be_negative) const;
-  void note(const std::string& text) const;
   void drop_left_out();
-  static void append(EdgeList& list, const Edge& edge, std::string label);
   EdgeList take_edges();
   std::vector<std::string> take_labels();
   Places take_places();
@@ -82,6 +93,7 @@ class GraphBuilder {
   AmountNames prizes_;
   std::function<void(const std::string&)> note_;
   std::function<std::string()> place_;
+  std::int64_t items_left_;
   NodeIds ids_;
   NodeId start_ = kNoNode;
   std::string unit_;
@@ -94,7 +106,7 @@ class GraphBuilder {
   std::vector<bool> blocked_;
   std::vector<double> prize_;
   std::vector<std::string> label_;
-  std::array<std::vector<double>, kPlaceColumns> places_;  // x and y by place_names(); NaN where there is none
+  std::array<std::vector<double>, kPlaceColumns> places_;  // x and y by kPlaceNames; NaN where there is none
 };
 
 }  // namespace graphdrl

@@ -1,5 +1,3 @@
-#include "graphdrl/io/graph_walker.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +6,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/json.h"
+#include "graphdrl/io/readers.h"
 
 namespace graphdrl {
 namespace {
@@ -29,13 +28,15 @@ class GraphWalkerReader {
     for (const json& edge : list_in(model, "edges")) read_edge(edge);
     place_ = "models[0]";
     const std::string first = text_in(model, "startElementId");
-    const auto entered = targets_.find(first);
-    if (entered != targets_.end()) {
-      builder_.set_start(entered->second);
-    } else if (!first.empty()) {
-      builder_.set_start(builder_.node(first));
+    if (!first.empty()) {
+      const auto entered = targets_.find(first);
+      builder_.set_start(entered != targets_.end() ? entered->second : builder_.node(first));
     } else if (entries_.size() == 1) {
       builder_.set_start(entries_.front());
+      builder_.note("the model names no start, so its only edge from nowhere does");
+    } else if (entries_.size() > 1) {
+      builder_.note(
+          fmt::format("the model names no start, and none of its {} edges from nowhere is taken", entries_.size()));
     }
     builder_.direct_all();
     return builder_.build();
@@ -71,7 +72,7 @@ class GraphWalkerReader {
     if (properties == vertex.end() || !properties->is_object()) return;
     std::vector<Attribute> attributes;
     for (const auto& [name, value] : properties->items()) {
-      if (is_place_name(name) && value.is_number()) attributes.push_back({name, value.dump()});
+      if (place_column(name) < kPlaceColumns && value.is_number()) attributes.push_back({name, value.dump()});
     }
     builder_.set_node(node, attributes);
   }
@@ -86,7 +87,7 @@ class GraphWalkerReader {
       entries_.push_back(target);
       return;
     }
-    builder_.add_edge(builder_.node(source), target, /*one_way=*/true);
+    builder_.add_edge(builder_.node(source), target, /*one_way=*/false);  // as all of them in the end
     if (cost_attribute_.empty()) return;
     std::vector<Attribute> attributes;
     for (const auto& [name, value] : edge.items()) {

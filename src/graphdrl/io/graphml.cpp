@@ -1,12 +1,12 @@
-#include "graphdrl/io/graphml.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <unordered_set>
 
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/io/utf8.h"
 #include "graphdrl/io/xml.h"
@@ -17,7 +17,9 @@ namespace {
 class GraphMlReader {
  public:
   GraphMlReader(std::string_view text, const std::string& source, const MapOptions& options)
-      : file_(text, source), note_(options.note), builder_(options, [this] { return file_.place(at_); }) {}
+      : file_(text, source),
+        builder_(
+            options, [this] { return file_.place(at_); }, std::ssize(text)) {}
 
   GraphMap read() {
     const pugi::xml_node root = file_.root("graphml");
@@ -91,8 +93,7 @@ class GraphMlReader {
     }
     std::vector<Attribute> attributes;
     append_drawing(item, attributes);
-    const std::vector<Attribute> data = data_of(node_keys_, item);
-    attributes.insert(attributes.end(), data.begin(), data.end());
+    std::ranges::move(data_of(node_keys_, item), std::back_inserter(attributes));
     builder_.set_node(node, attributes);
   }
 
@@ -110,12 +111,11 @@ class GraphMlReader {
   // A group that no edge leads to is a frame around its nodes.
   void leave_out_groups() {
     for (const NodeId group : groups_) builder_.leave_out(group);
-    if (groups_.empty() || !note_) return;
-    note_(fmt::format("{}: groups without edges of their own are left out: {}", file_.place(at_), groups_.size()));
+    if (groups_.empty()) return;
+    builder_.note(fmt::format("groups without edges of their own are left out: {}", groups_.size()));
   }
 
   const XmlFile file_;
-  std::function<void(const std::string&)> note_;
   pugi::xml_node at_;  // what is read, for errors
   std::vector<pugi::xml_node> graphs_;
   std::unordered_set<NodeId> groups_;  // that no edge has led to so far
@@ -125,9 +125,9 @@ class GraphMlReader {
   GraphBuilder builder_;
 };
 
-void append_key(pugi::xml_node root, const char* id, const char* kind, const char* name, const char* type) {
+void append_key(pugi::xml_node root, const char* name, const char* kind, const char* type) {
   pugi::xml_node key = root.append_child("key");
-  key.append_attribute("id") = id;
+  key.append_attribute("id") = name;
   key.append_attribute("for") = kind;
   key.append_attribute("attr.name") = name;
   key.append_attribute("attr.type") = type;
@@ -149,10 +149,6 @@ GraphMap parse_graphml(std::string_view text, const std::string& source, const M
   return GraphMlReader(text, source, options).read();
 }
 
-std::string format_graphml(const GraphMap& map) {
-  return format_graphml(map, {});
-}
-
 std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
@@ -161,16 +157,16 @@ std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
   pugi::xml_node root = document.append_child("graphml");
   root.append_attribute("xmlns") = "http://graphml.graphdrawing.org/xmlns";
   const bool blocked = std::find(map.blocked.begin(), map.blocked.end(), true) != map.blocked.end();
-  if (blocked) append_key(root, "blocked", "node", "blocked", "boolean");
-  if (!map.prizes.empty()) append_key(root, "prize", "node", "prize", "double");
+  if (blocked) append_key(root, "blocked", "node", "boolean");
+  if (!map.prizes.empty()) append_key(root, "prize", "node", "double");
   const std::vector<Point>& points = map.places.points;
   if (!points.empty()) {
-    append_key(root, "x", "node", "x", "double");
-    append_key(root, "y", "node", "y", "double");
+    append_key(root, "x", "node", "double");
+    append_key(root, "y", "node", "double");
   }
-  if (!map.places.unit.empty()) append_key(root, "unit", "graph", "unit", "string");
-  if (!column.name.empty()) append_key(root, column.name.c_str(), "node", column.name.c_str(), "string");
-  if (map.graph.weighted()) append_key(root, "weight", "edge", "weight", "double");
+  if (!map.places.unit.empty()) append_key(root, "unit", "graph", "string");
+  if (!column.name.empty()) append_key(root, column.name.c_str(), "node", "string");
+  if (map.graph.weighted()) append_key(root, "weight", "edge", "double");
   pugi::xml_node graph = root.append_child("graph");
   graph.append_attribute("edgedefault") = map.graph.directed() ? "directed" : "undirected";
   if (!map.places.unit.empty()) append_data(graph, "unit", map.places.unit);

@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
@@ -31,11 +32,6 @@ std::size_t find_too_deep(std::string_view text) {
     }
   }
   return std::string_view::npos;
-}
-
-std::string line_of(std::string_view text, std::size_t position, const std::string& source) {
-  const std::string_view before = text.substr(0, position);
-  return fmt::format("{}:{}", source, 1 + std::count(before.begin(), before.end(), '\n'));
 }
 
 // Appends compact JSON until the text is longer than max_length.
@@ -79,7 +75,7 @@ void require_shallow_json(std::string_view text, const std::string& source) {
   if (position == std::string_view::npos) return;
   throw Error({.what = "the JSON is nested too deeply",
                .expected = fmt::format("at most {} levels of objects and arrays", kMaxJsonDepth),
-               .where = line_of(text, position, source)});
+               .where = place_in(text, position, source)});
 }
 
 Error json_error(const std::exception& complaint, std::size_t position, std::string_view text,
@@ -92,10 +88,10 @@ Error json_error(const std::exception& complaint, std::size_t position, std::str
       return Error({.what = "not JSON",
                     .expected = "a number or null",
                     .got = in_quotes(word),
-                    .where = line_of(text, position, source)});
+                    .where = place_in(text, position, source)});
     }
   }
-  return Error({.what = "not JSON", .expected = expected, .where = line_of(text, position, source)});
+  return Error({.what = "not JSON", .expected = expected, .where = place_in(text, position, source)});
 }
 
 std::string shortened(const json& value, std::size_t max_length) {

@@ -4,31 +4,31 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
 
-#include "graphdrl/graph/grid_map.h"
-#include "graphdrl/io/map_options.h"
-#include "graphdrl/io/node_link.h"
+#include "graphdrl/io/any_map.h"
 
 namespace graphdrl {
 
-// A map as its file holds it.
-using AnyMap = std::variant<GridMap, GraphMap>;
-
 struct MapFormat {
+  // What has a meaning for some formats only.
+  enum Option : unsigned {
+    kNoOption = 0,
+    kCostAttribute = 1,
+    kPrizeAttribute = 2,
+    kBothAttributes = kCostAttribute | kPrizeAttribute,
+    kCellPixels = 4,
+    kUnknown = 8,
+    kDirected = 16
+  };
+
   std::string_view name;
   std::string_view ending;   // of files that it writes: ".txt"
   std::string_view purpose;  // one line
   bool (*recognise)(std::string_view text);
   AnyMap (*read)(std::string_view text, const std::string& source, const MapOptions& options);  // throws Error
+  unsigned options = kNoOption;
   std::string (*write_grid)(const GridMap& map) = nullptr;    // null where it holds no grids
   std::string (*write_graph)(const GraphMap& map) = nullptr;  // null where it does not hold all of a graph
-  // Which options have a meaning here.
-  bool takes_cost_attribute = false;
-  bool takes_prize_attribute = false;
-  bool takes_cell_pixels = false;
-  bool takes_unknown = false;
-  bool takes_directed = false;
 };
 
 // In the order in which they are tried.

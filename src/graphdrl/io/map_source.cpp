@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
+#include <set>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/graph/grid_transforms.h"
-#include "graphdrl/io/ascii_map.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/map_text.h"
+#include "graphdrl/io/readers.h"
 
 namespace graphdrl {
 namespace {
@@ -25,7 +23,7 @@ void refuse_option(const char* option, const std::string& what, const std::strin
 void shape_grid(GridMap& map, const MapOptions& options, const std::string& source) {
   const double side = map.frame ? map.frame->cell_size : 1;
   const std::string unit = map.frame ? map.frame->unit : "cells";
-  const double free_before = static_cast<double>(count_free(map)) * side * side;
+  const double free_before = static_cast<double>(map.free_count()) * side * side;
   double scale = 1;
   if (options.cell_size) {
     if (!map.frame) refuse_option("--cell-size", "maps that say how large their cells are", source);
@@ -40,11 +38,11 @@ void shape_grid(GridMap& map, const MapOptions& options, const std::string& sour
     scale = std::max(1.0, scale);
   }
   if (options.robot_radius > 0) map = with_obstacles_grown(std::move(map), options.robot_radius / side);
-  const std::int64_t cells_before = count_free(map);
+  const std::int64_t cells_before = map.free_count();
   if (scale > 1) map = coarsened(map, scale);
   map.diagonals = options.diagonals;
   map.cut_corners = options.cut_corners;
-  const double free_after = static_cast<double>(count_free(map)) * side * side * scale * scale;
+  const double free_after = static_cast<double>(map.free_count()) * side * side * scale * scale;
   if (free_after == 0) {
     throw Error({.what = "no cell is left free",
                  .expected = "a smaller robot or smaller cells",
@@ -64,17 +62,15 @@ void shape_map(AnyMap& map, const MapOptions& options, const std::string& source
 }
 
 void check_options(const MapFormat& format, const MapOptions& options, const std::string& source) {
-  if (!options.cost_attribute.empty() && !format.takes_cost_attribute) {
-    refuse_option("--cost-attribute", "graphs whose edges have attributes", source);
-  }
-  if (!options.prize_attribute.empty() && !format.takes_prize_attribute) {
-    refuse_option("--prize-attribute", "graphs whose nodes have attributes", source);
-  }
-  if (options.directed && !format.takes_directed) {
-    refuse_option("--directed", "edge lists and TGF: other formats say it themselves", source);
-  }
-  if (options.cell_pixels != 1 && !format.takes_cell_pixels) refuse_option("--cell-pixels", "pictures", source);
-  if (options.unknown_is_free && !format.takes_unknown) refuse_option("--unknown", "ROS maps", source);
+  using enum MapFormat::Option;
+  const auto refuse = [&](MapFormat::Option option, bool given, const char* name, const char* what) {
+    if (given && (format.options & option) == 0) refuse_option(name, what, source);
+  };
+  refuse(kCostAttribute, !options.cost_attribute.empty(), "--cost-attribute", "graphs whose edges have attributes");
+  refuse(kPrizeAttribute, !options.prize_attribute.empty(), "--prize-attribute", "graphs whose nodes have attributes");
+  refuse(kDirected, options.directed, "--directed", "edge lists and TGF: other formats say it themselves");
+  refuse(kCellPixels, options.cell_pixels != 1, "--cell-pixels", "pictures");
+  refuse(kUnknown, options.unknown_is_free, "--unknown", "ROS maps");
 }
 
 NamedMap file_map(const std::filesystem::path& path, const MapOptions& options) {
@@ -108,14 +104,10 @@ std::vector<NamedMap> folder_maps(const std::filesystem::path& folder, const Map
   if (files.empty()) throw Error({.what = "no map files in the folder", .where = folder.string()});
   std::sort(files.begin(), files.end());
   // The picture of a ROS map is no map of its own.
-  const auto has_yaml = [&](const std::filesystem::path& file) {
-    const std::string ending = file.extension().string();
-    if (ending != ".pgm" && ending != ".png") return false;
-    return std::binary_search(files.begin(), files.end(), std::filesystem::path(file).replace_extension(".yaml"));
-  };
-  std::vector<std::filesystem::path> pictures;
-  std::copy_if(files.begin(), files.end(), std::back_inserter(pictures), has_yaml);
-  std::erase_if(files, [&](const auto& file) { return std::binary_search(pictures.begin(), pictures.end(), file); });
+  const std::set<std::filesystem::path> all(files.begin(), files.end());
+  std::erase_if(files, [&](std::filesystem::path file) {
+    return (file.extension() == ".pgm" || file.extension() == ".png") && all.contains(file.replace_extension(".yaml"));
+  });
   std::vector<NamedMap> maps;
   maps.reserve(files.size());
   for (const auto& file : files) maps.push_back(file_map(file, options));

@@ -1,5 +1,3 @@
-#include "graphdrl/io/map_text.h"
-
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -9,8 +7,7 @@
 #include <cstdint>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/numpy_map.h"
-#include "graphdrl/io/picture.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/utf8.h"
 
 namespace graphdrl {
@@ -23,13 +20,10 @@ struct Archive {
   std::string_view begin;
   const char* what;
 };
-constexpr std::array kOtherArchives = {Archive{"PK\x03\x04", "a ZIP archive, or a spreadsheet"},
-                                       Archive{"BZh", "a file packed by bzip2"},
-                                       Archive{std::string_view("\xFD"
-                                                                "7zXZ\0",
-                                                                6),
-                                               "a file packed by xz"},
-                                       Archive{"\x28\xB5\x2F\xFD", "a file packed by zstd"}};
+constexpr Archive kOtherArchives[] = {{"PK\x03\x04", "a ZIP archive, or a spreadsheet"},
+                                      {"BZh", "a file packed by bzip2"},
+                                      {{"\xFD\x37zXZ\0", 6}, "a file packed by xz"},
+                                      {"\x28\xB5\x2F\xFD", "a file packed by zstd"}};
 
 // Some gzip files one after the other are one, too.
 std::string gunzipped(std::string_view packed, const std::string& source) {

@@ -1,12 +1,10 @@
-#include "graphdrl/io/moving_ai.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
@@ -19,26 +17,20 @@ constexpr std::string_view kBlockedCells = "@OTW";
 GridMap parse_header(Lines& lines, const std::string& source) {
   GridMap map;
   const auto fail = [&](const std::string& what, const std::string& expected, std::string_view got) {
-    throw Error({.what = what,
-                 .expected = expected,
-                 .got = in_quotes(got),
-                 .where = fmt::format("{}:{}", source, lines.number())});
+    throw Error({.what = what, .expected = expected, .got = in_quotes(got), .where = lines.place()});
   };
   while (lines.next()) {
     const std::string_view line = trimmed(lines.line());
-    const std::size_t space = line.find_first_of(" \t");
-    const std::string_view key = line.substr(0, space);
-    const std::string_view value = trimmed(line.substr(std::min(line.size(), key.size())));
+    std::string_view value = line;
+    const std::string_view key = take_word(value);
     if (key == "map" && value.empty()) return map;
     if (key == "type") {
       if (value != "octile") fail("a map of another type", "octile", value);
     } else if (key == "height" || key == "width") {
       int& size = key == "height" ? map.rows : map.cols;
       if (size != 0) fail("given twice", "one " + std::string(key), line);
-      const auto number = parse_number(value);
-      if (!number || *number < 1 || *number > std::numeric_limits<NodeId>::max() || *number != std::floor(*number)) {
-        fail("bad " + std::string(key), "a whole number from 1 up", value);
-      }
+      const auto number = parse_whole(value, 1, std::numeric_limits<NodeId>::max());
+      if (!number) fail("bad " + std::string(key), "a whole number from 1 up", value);
       size = static_cast<int>(*number);
     } else {
       fail("strange line in the header", "type, height, width or map", line);
@@ -55,7 +47,7 @@ bool is_moving_ai(std::string_view text) {
 }
 
 GridMap parse_moving_ai(std::string_view text, const std::string& source) {
-  Lines lines(text);
+  Lines lines(text, source);
   GridMap map = parse_header(lines, source);
   if (map.rows == 0 || map.cols == 0) {
     throw Error({.what = fmt::format("no {} in the header", map.rows == 0 ? "height" : "width"), .where = source});
@@ -78,7 +70,7 @@ GridMap parse_moving_ai(std::string_view text, const std::string& source) {
       throw Error({.what = "a row of another length",
                    .expected = fmt::format("{} cells, as the header says", map.cols),
                    .got = std::to_string(line.size()),
-                   .where = fmt::format("{}:{}", source, lines.number())});
+                   .where = lines.place()});
     }
     for (const char& c : line) {
       const bool blocked = kBlockedCells.find(c) != std::string_view::npos;
@@ -86,16 +78,15 @@ GridMap parse_moving_ai(std::string_view text, const std::string& source) {
         throw Error({.what = "strange character in the map",
                      .expected = "one of .GSE (free) or @OTW (blocked)",
                      .got = in_quotes({&c, 1}),
-                     .where = fmt::format("{}:{}:{}", source, lines.number(), &c - line.data() + 1)});
+                     .where = fmt::format("{}:{}", lines.place(), &c - line.data() + 1)});
       }
       map.blocked.push_back(blocked);
     }
   }
   while (lines.next()) {
     if (trimmed(lines.line()).empty()) continue;
-    throw Error({.what = "more rows than the header says",
-                 .expected = std::to_string(map.rows),
-                 .where = fmt::format("{}:{}", source, lines.number())});
+    throw Error(
+        {.what = "more rows than the header says", .expected = std::to_string(map.rows), .where = lines.place()});
   }
   if (std::find(map.blocked.begin(), map.blocked.end(), false) == map.blocked.end()) {
     throw Error({.what = "the map has no free cell", .where = source});

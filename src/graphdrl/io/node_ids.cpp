@@ -1,79 +1,52 @@
 #include "graphdrl/io/node_ids.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
-#include <optional>
+#include <iterator>
 
 namespace graphdrl {
 namespace {
 
-// The number that is spelled like this and no other way.
-std::optional<std::uint64_t> number_of(std::string_view id) {
-  std::uint64_t number = 0;
+// The number that is spelled like this and no other way; kNoNode where there is none.
+NodeId number_of(std::string_view id) {
+  NodeId number = 0;
   const char* const end = id.data() + id.size();
   const auto [rest, error] = std::from_chars(id.data(), end, number);
-  const bool leading_zero = id.size() > 1 && id.front() == '0';
-  if (error != std::errc() || rest != end || leading_zero) return std::nullopt;
-  return number;
-}
-
-std::string_view as_text(const fmt::format_int& number) {
-  return {number.data(), number.size()};
+  const bool one_spelling = !id.starts_with('-') && (id.size() == 1 || !id.starts_with('0'));
+  return error == std::errc() && rest == end && one_spelling ? number : kNoNode;
 }
 
 }  // namespace
 
-bool NodeIds::add(std::uint64_t id) {
-  if (!plain()) return add(as_text(fmt::format_int(id)));
-  if (id == static_cast<std::uint64_t>(count_)) {
-    ++count_;
-    return true;
-  }
-  if (find(id) != kNoNode) return false;
-  spell_out();
-  return add(as_text(fmt::format_int(id)));
-}
-
 bool NodeIds::add(std::string_view id) {
-  if (plain()) {
-    if (const auto number = number_of(id)) return add(*number);
-    spell_out();
+  const bool next_number = labels_.empty() && number_of(id) == count_;
+  if (!next_number) {
+    if (find(id) != kNoNode) return false;
+    const auto append = [this](std::string_view label) {
+      const auto node = static_cast<NodeId>(labels_.size());
+      nodes_.emplace(labels_.emplace_back(label), node);
+    };
+    while (std::ssize(labels_) < count_) append(std::to_string(labels_.size()));  // those before are spelled out
+    append(id);
   }
-  if (nodes_.find(id) != nodes_.end()) return false;
-  labels_->emplace_back(id);
-  nodes_.insert(count_++);
+  ++count_;
   return true;
 }
 
-NodeId NodeIds::find(std::uint64_t id) const {
-  if (!plain()) return find(as_text(fmt::format_int(id)));
-  return id < static_cast<std::uint64_t>(count_) ? static_cast<NodeId>(id) : kNoNode;
-}
-
 NodeId NodeIds::find(std::string_view id) const {
-  if (plain()) {
-    const auto number = number_of(id);
-    return number ? find(*number) : kNoNode;
+  if (labels_.empty()) {
+    const NodeId number = number_of(id);
+    return number < count_ ? number : kNoNode;
   }
   const auto node = nodes_.find(id);
-  return node == nodes_.end() ? kNoNode : *node;
+  return node == nodes_.end() ? kNoNode : node->second;
 }
 
 std::vector<std::string> NodeIds::take_labels() {
-  Labels labels;
-  if (!plain()) labels = std::move(*labels_);
-  *this = NodeIds();
+  std::vector<std::string> labels(std::make_move_iterator(labels_.begin()), std::make_move_iterator(labels_.end()));
+  count_ = 0;
+  nodes_.clear();
+  labels_.clear();
   return labels;
-}
-
-void NodeIds::spell_out() {
-  labels_ = std::make_unique<Labels>();
-  nodes_ = decltype(nodes_)(0, Hash{labels_.get()}, Equal{labels_.get()});
-  for (NodeId node = 0; node < count_; ++node) {
-    labels_->push_back(std::to_string(node));
-    nodes_.insert(node);
-  }
 }
 
 }  // namespace graphdrl

@@ -1,5 +1,3 @@
-#include "graphdrl/io/node_link.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +6,8 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/json.h"
+#include "graphdrl/io/readers.h"
+#include "graphdrl/io/text.h"
 #include "graphdrl/io/utf8.h"
 
 namespace graphdrl {
@@ -155,8 +155,8 @@ class NodeLinkReader {
     const NodeId node = builder_.add_node(id_at(item, "id"));
     attributes_.clear();
     for (const auto& [name, value] : item.items()) {
-      const bool label = is_name_of(name, label_names());
-      const bool skipped = (label && !value.is_string()) || (is_place_name(name) && !value.is_number());
+      const bool label = is_name_of(name, kLabelNames);
+      const bool skipped = (label && !value.is_string()) || (place_column(name) < kPlaceColumns && !value.is_number());
       if (same_name(name, "blocked") && !value.is_boolean()) fail("bad \"blocked\"", "true or false", value);
       if (skipped) continue;
       std::string text;
@@ -194,16 +194,16 @@ class NodeLinkReader {
 
 }  // namespace
 
+bool is_node_link(std::string_view text) {
+  return trimmed(text, " \t\r\n").starts_with('{');
+}
+
 GraphMap parse_node_link(std::string_view text, const std::string& source, const MapOptions& options) {
   return NodeLinkReader(text, source, options).read();
 }
 
 std::string format_node_link(const GraphMap& map) {
-  return format_node_link(map.graph, map.blocked, map.labels, map.prizes, map.places);
-}
-
-std::string format_node_link(const Graph& graph, const std::vector<bool>& blocked, std::span<const std::string> labels,
-                             std::span<const double> prizes, const Places& places) {
+  const auto& [graph, blocked, labels, prizes, places, task, multigraph] = map;
   std::string text;
   const std::vector<std::string> ids = fitted_labels(labels, valid_utf8);
   const auto append_id = [&](NodeId node) { text += ids.empty() ? std::to_string(node) : json(ids[node]).dump(); };

@@ -1,5 +1,3 @@
-#include "graphdrl/io/numpy_map.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <cstring>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
@@ -15,6 +14,23 @@ namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
 constexpr std::size_t kMostRows = 20'000;  // a matrix of 400 million values
+
+template <typename T>
+double load(const char* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return static_cast<double>(value);
+}
+
+struct NumpyType {
+  std::string_view name;
+  double (*load)(const char* at);
+};
+constexpr NumpyType kTypes[] = {
+    {"<f8", load<double>},        {"<f4", load<float>},         {"<i8", load<std::int64_t>},
+    {"<i4", load<std::int32_t>},  {"<i2", load<std::int16_t>},  {"|i1", load<std::int8_t>},
+    {"<u8", load<std::uint64_t>}, {"<u4", load<std::uint32_t>}, {"<u2", load<std::uint16_t>},
+    {"|u1", load<std::uint8_t>},  {"|b1", load<std::uint8_t>}};
 
 // An array of numbers as its file holds it [numpy.org, the NPY format].
 class NumpyArray {
@@ -37,32 +53,9 @@ class NumpyArray {
 
   const std::vector<std::size_t>& shape() const { return shape_; }
 
-  double operator[](std::size_t i) const {
-    const char* const at = values_.data() + i * size_;
-    switch (kind_) {
-      case 'f':
-        return size_ == 8 ? load<double>(at) : load<float>(at);
-      case 'i':
-        return size_ == 8   ? static_cast<double>(load<std::int64_t>(at))
-               : size_ == 4 ? load<std::int32_t>(at)
-               : size_ == 2 ? load<std::int16_t>(at)
-                            : load<std::int8_t>(at);
-      default:
-        return size_ == 8   ? static_cast<double>(load<std::uint64_t>(at))
-               : size_ == 4 ? load<std::uint32_t>(at)
-               : size_ == 2 ? load<std::uint16_t>(at)
-                            : load<std::uint8_t>(at);
-    }
-  }
+  double operator[](std::size_t i) const { return load_(values_.data() + i * size_); }
 
  private:
-  template <typename T>
-  static T load(const char* at) {
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-  }
-
   [[noreturn]] void fail(const std::string& what, const std::string& expected = {}, std::string_view got = {}) const {
     throw Error({.what = what, .expected = expected, .got = got.empty() ? "" : in_quotes(got), .where = source_});
   }
@@ -82,13 +75,12 @@ class NumpyArray {
   void read_type(std::string_view header) {
     static_assert(std::endian::native == std::endian::little);
     const std::string_view type = value_of(header, "descr");
-    constexpr std::string_view kTypes[] = {"<f8", "<f4", "<i8", "<i4", "<i2", "|i1", "<u8", "<u4", "<u2", "|u1", "|b1"};
-    const bool quoted = type.size() == 5;
-    const std::string_view name = quoted ? type.substr(1, 3) : type;
-    if (std::find(std::begin(kTypes), std::end(kTypes), name) == std::end(kTypes)) {
+    const std::string_view name = type.size() == 5 ? type.substr(1, 3) : type;  // without its quotes
+    const auto* const found = std::ranges::find(kTypes, name, &NumpyType::name);
+    if (found == std::end(kTypes)) {
       fail("an array of another type", "numbers in little-endian order, as float64", type);
     }
-    kind_ = name[1];
+    load_ = found->load;
     size_ = static_cast<std::size_t>(name[2] - '0');
   }
 
@@ -98,8 +90,8 @@ class NumpyArray {
     std::size_t count = 1;
     for (std::string_view rest = text.substr(1); !rest.empty() && rest.front() != ')';) {
       const std::size_t end = rest.find_first_of(",)");
-      const auto number = parse_number(trimmed(rest.substr(0, end)));
-      if (!number || *number < 0 || *number > 1e9 || *number != std::floor(*number)) fail("bad shape", "", text);
+      const auto number = parse_whole(trimmed(rest.substr(0, end)), 0, 1e9);
+      if (!number) fail("bad shape", "", text);
       shape_.push_back(static_cast<std::size_t>(*number));
       rest = trimmed(rest.substr(rest[end] == ',' ? end + 1 : end));
     }
@@ -114,8 +106,8 @@ class NumpyArray {
 
   const std::string& source_;
   std::string_view values_;
-  char kind_ = 'f';
-  std::size_t size_ = 8;  // bytes a value
+  double (*load_)(const char* at) = nullptr;  // a value
+  std::size_t size_ = 0;                      // of a value, in bytes
   std::vector<std::size_t> shape_;
 };
 
@@ -169,7 +161,7 @@ AnyMap parse_numpy_map(std::string_view bytes, const std::string& source) {
   Graph graph =
       Graph::from_edges(static_cast<NodeId>(count), edges, symmetric ? EdgeKind::kUndirected : EdgeKind::kDirected);
   if (auto grid = as_grid(graph, blocked)) return *std::move(grid);
-  return GraphMap{.graph = std::move(graph), .blocked = std::move(blocked), .labels = {}};
+  return GraphMap{.graph = std::move(graph), .blocked = std::move(blocked)};
 }
 
 }  // namespace graphdrl

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/readers.h"
 
 namespace graphdrl {
 namespace {
@@ -211,20 +212,23 @@ GridMap parse_netpbm_map(std::string_view bytes, const std::string& source, cons
   return grid_of(grey_of(NetpbmReader(bytes, source).read()), options.cell_pixels, source);
 }
 
-std::string format_png_map(const GridMap& map) {
+std::string format_png(int width, int height, int channels, const void* samples) {
   png_image image = {};
   image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(map.cols);
-  image.height = static_cast<png_uint_32>(map.rows);
-  image.format = PNG_FORMAT_GRAY;
-  const std::string pixels = pixels_of(map);
+  image.width = static_cast<png_uint_32>(width);
+  image.height = static_cast<png_uint_32>(height);
+  image.format = channels == 1 ? PNG_FORMAT_GRAY : PNG_FORMAT_RGB;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0) {
-    throw Error({.what = fmt::format("the map cannot be written as PNG ({})", escaped(image.message))});
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, samples, 0, nullptr) == 0) {
+    throw Error({.what = fmt::format("the picture cannot be written as PNG ({})", escaped(image.message))});
   }
   bytes.resize(size);
   return bytes;
+}
+
+std::string format_png_map(const GridMap& map) {
+  return format_png(map.cols, map.rows, 1, pixels_of(map).data());
 }
 
 std::string format_pgm_map(const GridMap& map) {

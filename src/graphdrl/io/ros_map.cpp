@@ -1,5 +1,3 @@
-#include "graphdrl/io/ros_map.h"
-
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
@@ -10,8 +8,8 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/graph_builder.h"
 #include "graphdrl/io/picture.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
@@ -41,17 +39,12 @@ Pixel pixel_of(std::span<const std::uint8_t> samples, Mode mode) {
   return {.level = sum / count, .transparent = alpha && samples.back() < 255};
 }
 
-// The keys and values of a file; throws YAML::Exception.
-YAML::Node parse_yaml(std::string_view text) {
-  return YAML::Load(std::string(text));
-}
-
 class RosMapReader {
  public:
   RosMapReader(std::string_view text, const std::string& source, const MapOptions& options)
       : source_(source), options_(options) {
     try {
-      document_ = parse_yaml(text);
+      document_ = YAML::Load(std::string(text));
     } catch (const YAML::Exception& complaint) {
       throw Error({.what = fmt::format("YAML that cannot be read ({})", escaped(complaint.msg)),
                    .where = fmt::format("{}:{}", source_, complaint.mark.line + 1)});
@@ -181,17 +174,18 @@ class RosMapReader {
 
 bool is_ros_map(std::string_view text) {
   constexpr std::size_t kLargest = 65536;  // bytes: parsing is slow, and such files are small
+  text = text.substr(0, kLargest);
   for (const char* const key : {"image", "resolution"}) {
-    if (text.substr(0, kLargest).find(key) == std::string_view::npos) return false;
+    if (text.find(key) == std::string_view::npos) return false;
   }
   try {
-    const YAML::Node document = parse_yaml(text.substr(0, kLargest));
+    const YAML::Node document = YAML::Load(std::string(text));
     return document.IsMap() && document["image"].IsDefined() && document["resolution"].IsDefined();
   } catch (const YAML::Exception&) {
     // A damaged one: its reader says where.
     bool image = false;
     bool resolution = false;
-    for (Lines lines(text.substr(0, kLargest)); lines.next();) {
+    for (Lines lines(text); lines.next();) {
       image = image || lines.line().starts_with("image:");
       resolution = resolution || lines.line().starts_with("resolution:");
     }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/checksum.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 
@@ -32,6 +33,11 @@ std::size_t dtype_size(std::string_view dtype) {
 [[noreturn]] void fail(const std::string& source, const std::string& what, const std::string& expected = "",
                        const std::string& got = "") {
   throw Error({.what = what, .expected = expected, .got = got, .where = source});
+}
+
+// Of a header without its checksum.
+std::string checksum_of(const Json& header, std::string_view data) {
+  return checksum({header.dump(), data});
 }
 
 // One array's line of the header, checked but for its neighbours.
@@ -76,26 +82,27 @@ std::string format_shape(const Shape& shape) {
   return fmt::format("[{}]", fmt::join(shape, ", "));
 }
 
-void write_safetensors(const std::filesystem::path& path, std::span<const TensorView> tensors,
-                       const Metadata& metadata) {
+std::string format_safetensors(std::span<const TensorView> tensors, const Metadata& metadata) {
   nlohmann::ordered_json header;
   header[kMetadataKey] = metadata;
-  std::size_t offset = 0;
+  std::string data;
   for (const TensorView& tensor : tensors) {
-    header[tensor.name] = {
-        {"dtype", tensor.dtype}, {"shape", tensor.shape}, {"data_offsets", {offset, offset + tensor.bytes.size()}}};
-    offset += tensor.bytes.size();
+    const std::size_t begin = data.size();
+    data.append(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
+    header[tensor.name] = {{"dtype", tensor.dtype}, {"shape", tensor.shape}, {"data_offsets", {begin, data.size()}}};
   }
+  header[kMetadataKey][kChecksumKey] = checksum_of(Json(header), data);
   std::string text = header.dump();
   text.append((8 - text.size() % 8) % 8, ' ');  // the data starts aligned
   const std::uint64_t length = text.size();
   std::string content(reinterpret_cast<const char*>(&length), sizeof length);
-  content += text;
-  content.reserve(content.size() + offset);
-  for (const TensorView& tensor : tensors) {
-    content.append(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
-  }
-  write_file(path, content);
+  content.reserve(content.size() + text.size() + data.size());
+  return content += text += data;
+}
+
+void write_safetensors(const std::filesystem::path& path, std::span<const TensorView> tensors,
+                       const Metadata& metadata) {
+  write_file(path, format_safetensors(tensors, metadata));
 }
 
 Safetensors Safetensors::read(const std::filesystem::path& path) {
@@ -112,8 +119,11 @@ Safetensors Safetensors::parse(std::string content, const std::string& source) {
     fail(source, "not a whole safetensors file", fmt::format("a header of {} bytes", length),
          fmt::format("{} bytes", content.size() - sizeof length));
   }
-  const Json header = parse_json_or_discard(std::string_view(content).substr(sizeof length, length));
-  if (!header.is_object()) fail(source, "not a safetensors file", "a header in JSON");
+  const std::string_view text = std::string_view(content).substr(sizeof length, length);
+  Json header = parse_json_or_discard(text);
+  // A zero byte would end the text for the parser.
+  if (!header.is_object() || text.find('\0') != std::string_view::npos)
+    fail(source, "not a safetensors file", "a header in JSON");
 
   Safetensors file;
   file.source_ = source;
@@ -130,6 +140,13 @@ Safetensors Safetensors::parse(std::string content, const std::string& source) {
       file.metadata_[key] = value;
     }
   }
+  if (const auto expected = file.metadata_.extract(kChecksumKey)) {
+    header[kMetadataKey].erase(kChecksumKey);
+    if (expected.mapped() != checksum_of(header, std::string_view(content).substr(file.data_begin_))) {
+      fail(source, "the file is damaged: its checksum is not that of its content");
+    }
+    file.has_checksum_ = true;
+  }
   std::sort(file.entries_.begin(), file.entries_.end(),
             [](const Entry& a, const Entry& b) { return std::pair(a.begin, a.end) < std::pair(b.begin, b.end); });
   std::size_t position = 0;
@@ -145,6 +162,10 @@ Safetensors Safetensors::parse(std::string content, const std::string& source) {
   }
   file.content_ = std::move(content);
   return file;
+}
+
+void Safetensors::require_checksum() const {
+  if (!has_checksum_) fail(source_, "the file is damaged: its checksum is missing");
 }
 
 const Safetensors::Entry& Safetensors::find(const std::string& name) const {

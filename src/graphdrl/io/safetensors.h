@@ -1,6 +1,7 @@
 // Safetensors files: named arrays behind a JSON header. Reading one never executes anything.
 // Format: u64 header length, JSON header {name: {dtype, shape, data_offsets}, "__metadata__": {key: text}}, data;
-// everything little-endian [github.com/huggingface/safetensors, "Format"].
+// everything little-endian [github.com/huggingface/safetensors, "Format"]. Files written here have a checksum among the
+// metadata: `xxh3_64`, of the header without it, its keys sorted and without spaces, and of the data behind it.
 #pragma once
 
 #include <algorithm>
@@ -29,6 +30,8 @@ inline constexpr std::string_view kDtypeOf<std::int32_t> = "I32";
 template <>
 inline constexpr std::string_view kDtypeOf<std::int64_t> = "I64";
 template <>
+inline constexpr std::string_view kDtypeOf<char> = "U8";
+template <>
 inline constexpr std::string_view kDtypeOf<std::uint16_t> = "U16";
 template <>
 inline constexpr std::string_view kDtypeOf<std::uint64_t> = "U64";
@@ -50,12 +53,14 @@ struct TensorView {
 
 using Metadata = std::map<std::string, std::string>;
 
-// Replaces `path` whole or not at all; tensors are stored in the order given. Throws Error.
+// A file's content; tensors are stored in the order given.
+std::string format_safetensors(std::span<const TensorView> tensors, const Metadata& metadata);
+// Replaces `path` with it, whole or not at all. Throws Error.
 void write_safetensors(const std::filesystem::path& path, std::span<const TensorView> tensors,
                        const Metadata& metadata);
 
 // A file read whole and checked: every array lies inside the data, has the size its shape asks for, overlaps no other
-// and leaves no gap.
+// and leaves no gap; the checksum, if there is one, is right.
 class Safetensors {
  public:
   struct Entry {
@@ -71,7 +76,10 @@ class Safetensors {
   static Safetensors parse(std::string content, const std::string& source);
 
   const std::vector<Entry>& entries() const { return entries_; }  // in order of position
-  const Metadata& metadata() const { return metadata_; }
+  const Metadata& metadata() const { return metadata_; }          // without the checksum
+  bool has_checksum() const { return has_checksum_; }
+  // Throws Error where there is none.
+  void require_checksum() const;
   const std::string& source() const { return source_; }
 
   // The shape of an array. Throws Error where the file holds none of that name.
@@ -95,6 +103,7 @@ class Safetensors {
   std::size_t data_begin_ = 0;
   std::vector<Entry> entries_;
   Metadata metadata_;
+  bool has_checksum_ = false;
 };
 
 std::string format_shape(const Shape& shape);  // "[4, 7, 7]"

@@ -1,26 +1,14 @@
-#include "graphdrl/io/tgf.h"
-
 #include <fmt/format.h>
 
 #include <unordered_set>
 
-#include "graphdrl/base/error.h"
 #include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
-namespace {
 
-// Takes the first word off a line.
-std::string_view take_word(std::string_view& line) {
-  line = trimmed(line);
-  const std::string_view word = line.substr(0, line.find_first_of(" \t"));
-  line = trimmed(line.substr(word.size()));
-  return word;
-}
-
-}  // namespace
-
+// Whether a line "#" ends a list of different nodes, which are no cells of a drawing.
 bool is_tgf(std::string_view text) {
   if (text.find("\n#") == std::string_view::npos) return false;
   std::unordered_set<std::string_view> nodes;
@@ -28,15 +16,15 @@ bool is_tgf(std::string_view text) {
     std::string_view line = lines.line();
     const std::string_view id = take_word(line);
     if (id == "#" && line.empty()) return !nodes.empty();
-    if (id.starts_with('#') || (!id.empty() && !nodes.insert(id).second)) return false;
+    const bool cell = id == "." && line.empty();
+    if (cell || id.starts_with('#') || (!id.empty() && !nodes.insert(id).second)) return false;
   }
   return false;
 }
 
 GraphMap parse_tgf(std::string_view text, const std::string& source, const MapOptions& options) {
-  Lines lines(text);
-  const auto place = [&] { return fmt::format("{}:{}", source, lines.number()); };
-  GraphBuilder builder(options, place);
+  Lines lines(text, source);
+  GraphBuilder builder(options, [&] { return lines.place(); });
   bool edges = false;
   std::int64_t texts = 0;
   while (lines.next()) {
@@ -50,9 +38,7 @@ GraphMap parse_tgf(std::string_view text, const std::string& source, const MapOp
       if (!rest.empty()) builder.set_node(node, "label", rest);
     } else {
       const std::string_view to = take_word(rest);
-      if (to.empty()) {
-        throw Error({.what = "not an edge", .expected = "two nodes", .got = in_quotes(lines.line()), .where = place()});
-      }
+      if (to.empty()) lines.fail("not an edge", "two nodes");
       builder.add_edge(builder.node(id), builder.node(to), options.directed);
       if (parse_number(rest)) {
         builder.set_edge("cost", rest);

@@ -1,41 +1,42 @@
-#include "graphdrl/io/tsplib.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/graph_builder.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/io/text.h"
 
 namespace graphdrl {
 namespace {
 
 // Of the header. TSPSOL, the length of a tour, stands in files of OPLib.
-constexpr std::array<std::string_view, 10> kKeywords = {"NAME",
-                                                        "TYPE",
-                                                        "COMMENT",
-                                                        "DIMENSION",
-                                                        "COST_LIMIT",
-                                                        "EDGE_WEIGHT_TYPE",
-                                                        "EDGE_WEIGHT_FORMAT",
-                                                        "NODE_COORD_TYPE",
-                                                        "TSPSOL",
-                                                        "DISPLAY_DATA_TYPE"};
+constexpr std::string_view kKeywords[] = {"NAME",
+                                          "TYPE",
+                                          "COMMENT",
+                                          "DIMENSION",
+                                          "COST_LIMIT",
+                                          "EDGE_WEIGHT_TYPE",
+                                          "EDGE_WEIGHT_FORMAT",
+                                          "NODE_COORD_TYPE",
+                                          "TSPSOL",
+                                          "DISPLAY_DATA_TYPE"};
 constexpr NodeId kMostNodes = 100'000;
 constexpr NodeId kMostExplicit = 20'000;  // a matrix of 3 GB
 constexpr double kMostNumber = 1e15;      // of places, costs and scores: distances stay whole, and sums finite
 constexpr std::string_view kSpace = " \t\r\n";
+constexpr std::string_view kKeywordEnds = " \t\r\n:";
 
 bool is_keyword(std::string_view word) {
-  return std::find(kKeywords.begin(), kKeywords.end(), word) != kKeywords.end();
+  return std::ranges::find(kKeywords, word) != std::end(kKeywords);
 }
 
 enum class Distance { kEuclidean, kCeiling, kGeographic, kPseudoEuclidean };
+constexpr std::string_view kDistances[] = {"EUC_2D", "CEIL_2D", "GEO", "ATT"};  // in the order of Distance
 
 // TSPLIB's formulas (Reinelt 1995, section 2); of geographic ones with its values of pi and of the earth's radius, in
 // km, and degrees cut to whole ones before minutes are read, as all solvers do.
@@ -106,7 +107,7 @@ class TsplibReader {
       at_ = section.begin;
       read_section(section.name);
       skip_space();
-      if (at_ < section.end) fail_here("an unknown keyword", in_quotes(word(" \t\r\n:")));
+      if (at_ < section.end) fail_here("an unknown keyword", in_quotes(word(kKeywordEnds)));
     }
     return build();
   }
@@ -118,8 +119,7 @@ class TsplibReader {
   }
   // Of the line read last.
   [[noreturn]] void fail_here(const std::string& what, const std::string& got = {}) const {
-    const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
-    throw Error({.what = what, .got = got, .where = fmt::format("{}:{}", source_, line)});
+    throw Error({.what = what, .got = got, .where = place_in(text_, at_, source_)});
   }
 
   bool skip_space() {
@@ -154,15 +154,13 @@ class TsplibReader {
     if (std::abs(value) > kMostNumber) fail_here(fmt::format("too large a number in {}", where), in_quotes(found));
     return value;
   }
-  NodeId node(std::string_view where) {
-    const double value = number(where);
-    if (value == std::floor(value) && value >= 1 && value <= nodes_) return static_cast<NodeId>(value) - 1;
-    fail_here(fmt::format("no such node in {}: nodes are 1 to {}", where, nodes_), fmt::format("'{:g}'", value));
-  }
-
   // Of a section that lists every node once.
   NodeId next_node(std::string_view where, std::vector<bool>& listed) {
-    const NodeId found = node(where);
+    const double value = number(where);
+    if (value != std::floor(value) || value < 1 || value > nodes_) {
+      fail_here(fmt::format("no such node in {}: nodes are 1 to {}", where, nodes_), fmt::format("'{:g}'", value));
+    }
+    const NodeId found = static_cast<NodeId>(value) - 1;
     if (listed[found]) fail_here(fmt::format("node {} comes twice in {}", found + 1, where));
     listed[found] = true;
     return found;
@@ -170,7 +168,7 @@ class TsplibReader {
 
   // A line of the header or a section; false at the end.
   bool read_entry() {
-    const std::string keyword(word(" \t\r\n:"));
+    const std::string keyword(word(kKeywordEnds));
     if (keyword == "EOF") return false;
     if (keyword.ends_with("_SECTION")) {
       value_of_line();
@@ -185,30 +183,30 @@ class TsplibReader {
     if (!header_.try_emplace(keyword, value).second && keyword != "COMMENT")
       fail_here(fmt::format("{} comes twice", keyword));
     if (keyword == "DIMENSION") {
-      const double count = to_number(value, keyword);
-      if (!(count >= 1 && count <= kMostNodes && count == std::floor(count))) {
+      to_number(value, keyword);
+      const auto count = parse_whole(value, 1, kMostNodes);
+      if (!count) {
         fail_here(fmt::format("bad DIMENSION: a number of nodes from 1 to {}", kMostNodes), in_quotes(value));
       }
-      nodes_ = static_cast<NodeId>(count);
+      nodes_ = static_cast<NodeId>(*count);
     } else if (keyword == "COST_LIMIT") {
-      const double limit = to_number(value, keyword);
-      if (limit < 0) fail_here("a negative COST_LIMIT", in_quotes(value));
-      task_.budget = limit;
+      task_.budget = to_number(value, keyword);
+      if (*task_.budget < 0) fail_here("a negative COST_LIMIT", in_quotes(value));
     }
     return true;
   }
 
   // Goes to the next keyword. Sections are read when all of the header is known, in whatever order they stand.
   void skip_section(const std::string& name) {
-    sections_.push_back({name, at_, text_.size()});
+    const std::size_t begin = at_;
     while (skip_space()) {
-      const std::size_t begin = at_;
-      const std::string_view first = word(" \t\r\n:");
-      at_ = begin;
+      const std::size_t line_begin = at_;
+      const std::string_view first = word(kKeywordEnds);
+      at_ = line_begin;
       if (first == "EOF" || first.ends_with("_SECTION") || is_keyword(first)) break;
       at_ = line_end();
     }
-    sections_.back().end = at_;
+    sections_.push_back({name, begin, at_});
   }
 
   void read_section(const std::string& name) {
@@ -232,11 +230,11 @@ class TsplibReader {
       }
     } else if (name == "DEPOT_SECTION") {
       for (std::string_view found = word(); found != "-1"; found = word()) {
-        const double value = to_number(found, name);
+        to_number(found, name);
         if (task_.start != kNoNode) fail_here("more than one depot");
-        if (!(value >= 1 && value <= nodes_ && value == std::floor(value)))
-          fail_here("no such depot", in_quotes(found));
-        task_.start = task_.end = static_cast<NodeId>(value) - 1;
+        const auto depot = parse_whole(found, 1, nodes_);
+        if (!depot) fail_here("no such depot", in_quotes(found));
+        task_.start = task_.end = static_cast<NodeId>(*depot) - 1;
       }
     } else if (name == "EDGE_WEIGHT_SECTION") {
       read_matrix();
@@ -278,14 +276,12 @@ class TsplibReader {
       }
       if (task_.start == kNoNode) fail("DEPOT_SECTION names no depot");
     }
-    GraphMap map{.graph = Graph::complete(nodes_, pair_costs(), options_.progress),
-                 .blocked = std::vector<bool>(nodes_),
-                 .labels = {},
-                 .prizes = std::move(prizes_),
-                 .places = {.points = std::move(places_), .unit = {}},
-                 .task = task_};
-    for (NodeId node = 1; node <= nodes_; ++node) map.labels.push_back(std::to_string(node));
-    return map;
+    return {.graph = Graph::complete(nodes_, pair_costs(), options_.progress),
+            .blocked = std::vector<bool>(nodes_),
+            .labels = labels_from_one(nodes_),
+            .prizes = std::move(prizes_),
+            .places = {.points = std::move(places_), .unit = {}},
+            .task = task_};
   }
 
   std::shared_ptr<const PairCosts> pair_costs() {
@@ -294,16 +290,12 @@ class TsplibReader {
       if (matrix_.empty()) fail("EDGE_WEIGHT_SECTION is missing");
       return std::make_shared<MatrixCosts>(nodes_, std::move(matrix_));
     }
-    static const std::map<std::string, Distance> distances = {{"EUC_2D", Distance::kEuclidean},
-                                                              {"CEIL_2D", Distance::kCeiling},
-                                                              {"GEO", Distance::kGeographic},
-                                                              {"ATT", Distance::kPseudoEuclidean}};
-    const auto found = distances.find(type);
-    if (found == distances.end()) {
+    const auto* const distance = std::ranges::find(kDistances, type);
+    if (distance == std::end(kDistances)) {
       fail("bad EDGE_WEIGHT_TYPE: EUC_2D, CEIL_2D, GEO, ATT or EXPLICIT", in_quotes(type));
     }
     if (points_.empty()) fail("NODE_COORD_SECTION is missing");
-    return std::make_shared<PlaneCosts>(found->second, std::move(points_));
+    return std::make_shared<PlaneCosts>(static_cast<Distance>(distance - kDistances), std::move(points_));
   }
 
   struct Section {
@@ -330,7 +322,7 @@ class TsplibReader {
 
 bool is_tsplib(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-  const std::string_view first = text.substr(0, text.find_first_of(" \t\r\n:"));
+  const std::string_view first = text.substr(0, text.find_first_of(kKeywordEnds));
   return is_keyword(first) || first.ends_with("_SECTION");
 }
 

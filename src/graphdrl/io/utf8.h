@@ -28,6 +28,10 @@ bool is_utf8(std::string_view text);
 // The same text, U+FFFD in place of every byte that belongs to no character.
 std::string valid_utf8(std::string_view text);
 
+// The same text, in place of every entity of HTML 4 ("&eacute;") and every number ("&#233;", "&#xE9;") its character.
+// Others stay.
+std::string without_entities(std::string_view text);
+
 // Labels as a file can hold them, each made so by `fit`; none where they would no longer be all different.
 std::vector<std::string> fitted_labels(std::span<const std::string> labels, std::string (*fit)(std::string_view));
 

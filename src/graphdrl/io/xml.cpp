@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/utf8.h"
 
@@ -15,15 +13,6 @@ XmlFile::XmlFile(std::string_view text, const std::string& source) : text_(text)
   if (result) return;
   throw Error(
       {.what = fmt::format("XML that is not well formed ({})", result.description()), .where = place(result.offset)});
-}
-
-std::string XmlFile::place(std::ptrdiff_t offset) const {
-  offset = std::clamp<std::ptrdiff_t>(offset, 0, std::ssize(text_));
-  return fmt::format("{}:{}", source_, 1 + std::count(text_.begin(), text_.begin() + offset, '\n'));
-}
-
-std::string XmlFile::place(pugi::xml_node at) const {
-  return at ? place(at.offset_debug()) : source_;
 }
 
 void XmlFile::fail(pugi::xml_node at, const std::string& what, const std::string& expected) const {

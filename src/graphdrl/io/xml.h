@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "graphdrl/io/attributes.h"
+#include "graphdrl/io/text.h"
 
 namespace graphdrl {
 
@@ -20,11 +21,11 @@ class XmlFile {
   // The element with this name that holds all others; none where there is no such one.
   pugi::xml_node root(const char* name) const { return document_.child(name); }
   // Where in the file an element stands: "file:line".
-  std::string place(pugi::xml_node at) const;
+  std::string place(pugi::xml_node at) const { return at ? place(at.offset_debug()) : source_; }
   [[noreturn]] void fail(pugi::xml_node at, const std::string& what, const std::string& expected) const;
 
  private:
-  std::string place(std::ptrdiff_t offset) const;
+  std::string place(std::ptrdiff_t offset) const { return place_in(text_, static_cast<std::size_t>(offset), source_); }
 
   std::string_view text_;
   const std::string& source_;

@@ -162,7 +162,7 @@ SeenVisits encode(const Exploration& state, ExplorerScratch& scratch, ExplorerBa
   const auto out_of_scope = std::erase_if(
       visits, [&](const FirstVisit& visit) { return !scratch.scope.holds(horizon.index_of(visit.node)); });
   measure_steps_to_work(horizon, scratch.queue, scratch.steps_to_work);
-  const int unvisited_beyond = view.valid_count() - state.ground_count() - horizon.unvisited_count();
+  const int unvisited_beyond = state.new_count() - horizon.unvisited_count();
   measure_parts(horizon, scratch.scope, unvisited_beyond, scratch.queue, scratch.part_size);
   measure_hanging_trees(horizon, scratch.queue, scratch.trees);
   append_nodes(state, scratch, batch);

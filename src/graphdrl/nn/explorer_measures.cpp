@@ -35,8 +35,7 @@ void measure_nearby(const Exploration& state, const Horizon& horizon, int scope,
   });
   nearby.nearest_are_all = reached_all && reached == std::ssize(nearby.nearest);
   if (!reached_all) {
-    work = all_in_reach && horizon.is_all() ? horizon.unvisited_count()
-                                            : state.view().valid_count() - state.ground_count();
+    work = all_in_reach && horizon.is_all() ? horizon.unvisited_count() : state.new_count();
   }
   nearby.work = work;
 }

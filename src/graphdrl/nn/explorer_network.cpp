@@ -12,28 +12,28 @@ namespace {
 constexpr int kWidth = kExplorerConvShape.width;
 constexpr int kVisitsPerTask = 64;
 
-std::vector<TensorSpec> explorer_specs() {
-  TensorList list;
-  list.add_conv("conv", kExplorerConvShape);
-  list.add_linear("head1", kExplorerHead1);
-  list.add_linear("head2", kExplorerHead2);
-  return std::move(list).specs();
-}
-
-// A row of [count, width].
-template <typename T>
-T* row_of(T* values, int row, int width) {
-  return values + static_cast<std::ptrdiff_t>(row) * width;
-}
-
 void add_to(const float* from, int count, float* to) {
   for (int i = 0; i < count; ++i) to[i] += from[i];
+}
+
+// Divides each graph's row by its number of nodes. rows: [B, D].
+void divide_by_sizes(const GraphBatch& graphs, float* rows) {
+  for (int g = 0; g < graphs.graph_count(); ++g) {
+    const float share = 1.0f / static_cast<float>(graphs.graph(g).node_count());
+    for (int i = 0; i < kWidth; ++i) row_of(rows, g, kWidth)[i] *= share;
+  }
 }
 
 }  // namespace
 
 const std::vector<TensorSpec>& ExplorerParameters::specs() {
-  static const std::vector<TensorSpec> specs = explorer_specs();
+  static const std::vector<TensorSpec> specs = [] {
+    std::vector<TensorSpec> list;
+    add_conv(list, "conv", kExplorerConvShape);
+    add_linear(list, "head1", kExplorerHead1);
+    add_linear(list, "head2", kExplorerHead2);
+    return list;
+  }();
   return specs;
 }
 
@@ -71,7 +71,7 @@ void write_policy_file(const std::filesystem::path& path, const ExplorerParamete
 
 ExplorerParameters read_explorer(const Safetensors& file) {
   require_description(file, ExplorerParameters::description(), ExplorerParameters::specs());
-  return ExplorerParameters::from_file(file);
+  return ExplorerParameters(file);
 }
 
 void ExplorerNetwork::set_parameters(const ExplorerParameters& parameters) {
@@ -81,17 +81,13 @@ void ExplorerNetwork::set_parameters(const ExplorerParameters& parameters) {
 
 void ExplorerNetwork::forward(const ExplorerBatch& batch, std::span<float> shortfall, bool keep) {
   const int visits = batch.visit_count();
-  const int graphs = batch.graphs.graph_count();
   embedded_.resize(static_cast<std::size_t>(batch.graphs.node_count()) * kWidth);
-  pooled_.resize(static_cast<std::size_t>(graphs) * kWidth);
+  pooled_.resize(static_cast<std::size_t>(batch.graphs.graph_count()) * kWidth);
   joined_.resize(static_cast<std::size_t>(visits) * kExplorerHeadInputs);
   hidden_.resize(static_cast<std::size_t>(visits) * kExplorerHead1.outputs);
   conv_.forward(batch.graphs, batch.node_x.data(), embedded_.data(), keep);
   sum_pool(batch.graphs, kWidth, embedded_.data(), pooled_.data());
-  for (int g = 0; g < graphs; ++g) {
-    const float share = 1.0f / static_cast<float>(batch.graphs.graph(g).node_count());
-    for (int i = 0; i < kWidth; ++i) row_of(pooled_.data(), g, kWidth)[i] *= share;
-  }
+  divide_by_sizes(batch.graphs, pooled_.data());
   parallel_for((visits + kVisitsPerTask - 1) / kVisitsPerTask, [&](int task) {
     for (int v = task * kVisitsPerTask; v < std::min(visits, (task + 1) * kVisitsPerTask); ++v) {
       float* to = row_of(joined_.data(), v, kExplorerHeadInputs);
@@ -124,10 +120,7 @@ void ExplorerNetwork::backward(const ExplorerBatch& batch, std::span<const float
     const float* const from = row_of(grad_joined_.data(), v, kExplorerHeadInputs);
     add_to(from + 2 * kWidth, kWidth, row_of(grad_pooled_.data(), batch.state[v], kWidth));
   }
-  for (int g = 0; g < batch.graphs.graph_count(); ++g) {
-    const float share = 1.0f / static_cast<float>(batch.graphs.graph(g).node_count());
-    for (int i = 0; i < kWidth; ++i) row_of(grad_pooled_.data(), g, kWidth)[i] *= share;
-  }
+  divide_by_sizes(batch.graphs, grad_pooled_.data());
   sum_pool_backward(batch.graphs, kWidth, grad_pooled_.data(), grad_nodes_.data());
   for (int v = 0; v < visits; ++v) {
     const float* const from = row_of(grad_joined_.data(), v, kExplorerHeadInputs);

@@ -30,16 +30,12 @@ class ExplorerParameters : public ParameterBuffer {
  public:
   ExplorerParameters() : ParameterBuffer(specs()) {}
   explicit ExplorerParameters(Rng& rng) : ExplorerParameters() { draw(rng); }
+  // Of a file. Throws Error as ParameterBuffer does.
+  explicit ExplorerParameters(const Safetensors& file, const std::string& prefix = "")
+      : ParameterBuffer(specs(), file, prefix) {}
 
   static const std::vector<TensorSpec>& specs();
   static nlohmann::json description();  // as in policy files
-
-  static ExplorerParameters from_file(const Safetensors& file, const std::string& prefix = "") {
-    return ExplorerParameters(ParameterBuffer(specs(), file, prefix));
-  }
-
- private:
-  explicit ExplorerParameters(ParameterBuffer buffer) : ParameterBuffer(std::move(buffer)) {}
 };
 
 // Policy files of this network. Throw Error.
@@ -63,7 +59,7 @@ class ExplorerNetwork {
 
  private:
   const ExplorerParameters* parameters_ = nullptr;
-  GatedGraphConv<float> conv_;
+  GatedGraphConv conv_;
   std::vector<float> embedded_;     // [N, D]
   std::vector<float> pooled_;       // [B, D], means
   std::vector<float> joined_;       // [C, head inputs]

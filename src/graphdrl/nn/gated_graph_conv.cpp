@@ -20,16 +20,14 @@ constexpr int kBlockNodes = 200;
 // Block order of PyTorch's GRU weights (r, z, n), by position in the order used here (n, r, z).
 constexpr int kTorchBlock[3] = {2, 0, 1};
 
-template <typename T>
-void grow(std::vector<T>& buffer, std::size_t size) {
+void grow(std::vector<float>& buffer, std::size_t size) {
   if (buffer.size() < size) buffer.resize(size);
 }
 
 // The sums within each graph of a chunk. in, out: [nodes, columns] with rows `width` apart, starting at the chunk's
 // first node.
-template <typename T>
-void sum_neighbours(const GraphBatch& batch, int first_graph, int graph_count, int columns, int width, const T* in,
-                    bool accumulate, T* out) {
+void sum_neighbours(const GraphBatch& batch, int first_graph, int graph_count, int columns, int width, const float* in,
+                    bool accumulate, float* out) {
   for (int g = first_graph; g < first_graph + graph_count; ++g) {
     const std::ptrdiff_t base = (batch.first_node(g) - batch.first_node(first_graph)) * std::ptrdiff_t{width};
     sum_neighbours(batch.graph(g), columns, width, in + base, accumulate, out + base);
@@ -38,12 +36,10 @@ void sum_neighbours(const GraphBatch& batch, int first_graph, int graph_count, i
 
 }  // namespace
 
-template <typename T>
-GatedGraphConv<T>::GatedGraphConv(GatedGraphConvShape shape)
+GatedGraphConv::GatedGraphConv(GatedGraphConvShape shape)
     : shape_(shape), folded_(shape.steps), bias_(4 * static_cast<std::size_t>(shape.width)) {}
 
-template <typename T>
-void GatedGraphConv<T>::set_weights(const GatedGraphConvTensors<const T>& weights) {
+void GatedGraphConv::set_weights(const GatedGraphConvTensors<const float>& weights) {
   weights_ = weights;
   const int width = shape_.width;
   const std::ptrdiff_t square = static_cast<std::ptrdiff_t>(width) * width;
@@ -66,8 +62,7 @@ void GatedGraphConv<T>::set_weights(const GatedGraphConvTensors<const T>& weight
   }
 }
 
-template <typename T>
-void GatedGraphConv<T>::cut_into_chunks(const GraphBatch& batch) {
+void GatedGraphConv::cut_into_chunks(const GraphBatch& batch) {
   chunks_.clear();
   Chunk chunk{};
   for (int g = 0; g < batch.graph_count(); ++g) {
@@ -80,8 +75,7 @@ void GatedGraphConv<T>::cut_into_chunks(const GraphBatch& batch) {
   }
 }
 
-template <typename T>
-void GatedGraphConv<T>::forward(const GraphBatch& batch, const T* x, T* out, bool keep) {
+void GatedGraphConv::forward(const GraphBatch& batch, const float* x, float* out, bool keep) {
   const std::size_t values = static_cast<std::size_t>(keep ? shape_.steps : 1) * batch.node_count() * shape_.width;
   grow(state_, values);
   grow(message_, values);
@@ -91,39 +85,37 @@ void GatedGraphConv<T>::forward(const GraphBatch& batch, const T* x, T* out, boo
                [&](int index) { forward_chunk(batch, chunks_[index], x, out, keep); });
 }
 
-template <typename T>
-void GatedGraphConv<T>::forward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* x, T* out, bool keep) {
+void GatedGraphConv::forward_chunk(const GraphBatch& batch, const Chunk& chunk, const float* x, float* out, bool keep) {
   const int width = shape_.width;
   const int rows = chunk.node_count;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(chunk.first_node) * width;
   const std::ptrdiff_t stride = keep ? static_cast<std::ptrdiff_t>(batch.node_count()) * width : 0;  // a step's values
 
-  T* const padded = state_.data() + first;
+  float* const padded = state_.data() + first;
   for (int row = 0; row < rows; ++row) {
-    const T* const from = x + (static_cast<std::ptrdiff_t>(chunk.first_node) + row) * shape_.inputs;
-    T* const to = padded + static_cast<std::ptrdiff_t>(row) * width;
+    const float* const from = x + (static_cast<std::ptrdiff_t>(chunk.first_node) + row) * shape_.inputs;
+    float* const to = padded + static_cast<std::ptrdiff_t>(row) * width;
     std::copy(from, from + shape_.inputs, to);
-    std::fill(to + shape_.inputs, to + width, T{0});
+    std::fill(to + shape_.inputs, to + width, 0.0f);
   }
   for (int step = 0; step < shape_.steps; ++step) {
     const int live = live_columns(step);
-    const T* const h = state_.data() + step * stride + first;
-    T* const message = message_.data() + step * stride + first;
-    T* const gates = gates_.data() + 4 * (step * stride + first);
+    const float* const h = state_.data() + step * stride + first;
+    float* const message = message_.data() + step * stride + first;
+    float* const gates = gates_.data() + 4 * (step * stride + first);
     sum_neighbours(batch, chunk.first_graph, chunk.graph_count, live, width, h, false, message);
     // (A h) P_l into n, r, z; h W_hhᵀ added to r, z and put into hn
     gemm(Op::kNone, rows, 3 * width, live, message, width, folded_[step], false, gates, 4 * width);
     gemm(Op::kNone, rows, 2 * width, live, h, width, w_hh_reset_update_, true, gates + width, 4 * width);
     gemm(Op::kNone, rows, width, live, h, width, w_hh_new_, false, gates + 3 * width, 4 * width);
-    T* const next = step + 1 == shape_.steps ? out + first : state_.data() + (step + 1) * stride + first;
+    float* const next = step + 1 == shape_.steps ? out + first : state_.data() + (step + 1) * stride + first;
     gru_forward(rows, width, bias_.data(), gates, h, next);
   }
   if (shape_.elu) elu(out + first, static_cast<std::size_t>(rows) * width);
 }
 
-template <typename T>
-void GatedGraphConv<T>::backward(const GraphBatch& batch, const T* out, const T* grad_out, T* grad_x,
-                                 const GatedGraphConvTensors<T>& grad) {
+void GatedGraphConv::backward(const GraphBatch& batch, const float* out, const float* grad_out, float* grad_x,
+                              const GatedGraphConvTensors<float>& grad) {
   const int nodes = batch.node_count();
   const std::size_t values = static_cast<std::size_t>(nodes) * shape_.width;
   grow(grad_, values);
@@ -146,20 +138,19 @@ void GatedGraphConv<T>::backward(const GraphBatch& batch, const T* out, const T*
   unfold(grad);
 }
 
-template <typename T>
-void GatedGraphConv<T>::backward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* out, const T* grad_out,
-                                       T* grad_x) {
+void GatedGraphConv::backward_chunk(const GraphBatch& batch, const Chunk& chunk, const float* out,
+                                    const float* grad_out, float* grad_x) {
   const int width = shape_.width;
   const int rows = chunk.node_count;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(chunk.first_node) * width;
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(batch.node_count()) * width;
-  T* const grad = grad_.data() + first;
-  T* const by_message = scratch_.data() + first;
+  float* const grad = grad_.data() + first;
+  float* const by_message = scratch_.data() + first;
   std::copy(grad_out + first, grad_out + first + static_cast<std::ptrdiff_t>(rows) * width, grad);
   if (shape_.elu) elu_backward(out + first, grad, static_cast<std::size_t>(rows) * width);
   for (int step = shape_.steps - 1; step >= 0; --step) {
     const int live = live_columns(step);
-    T* const gates = gates_.data() + 4 * (step * stride + first);
+    float* const gates = gates_.data() + 4 * (step * stride + first);
     gru_backward(rows, width, gates, state_.data() + step * stride + first, grad);
     if (step == 0 && grad_x == nullptr) return;
     // by h: through the gates' own share, dgates W_hh, and through the message, Aᵀ (dgates P_lᵀ), where Aᵀ = A
@@ -168,33 +159,32 @@ void GatedGraphConv<T>::backward_chunk(const GraphBatch& batch, const Chunk& chu
     sum_neighbours(batch, chunk.first_graph, chunk.graph_count, live, width, by_message, true, grad);
   }
   for (int row = 0; row < rows; ++row) {
-    const T* const from = grad + static_cast<std::ptrdiff_t>(row) * width;
+    const float* const from = grad + static_cast<std::ptrdiff_t>(row) * width;
     std::copy(from, from + shape_.inputs,
               grad_x + (static_cast<std::ptrdiff_t>(chunk.first_node) + row) * shape_.inputs);
   }
 }
 
-template <typename T>
-void GatedGraphConv<T>::weight_products(int step, int gate, int nodes) {
+void GatedGraphConv::weight_products(int step, int gate, int nodes) {
   const int width = shape_.width;
   const int live = live_columns(step);
   const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(nodes) * width;
   const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(step) * 3 * width * width;
-  T* const by_folded = folded_grad_.data() + offset + gate * width;               // n, r, z
-  T* const by_w_hh = w_hh_grad_.data() + offset + std::max(gate - 1, 0) * width;  // r, z, hn
-  T* const by_bias = bias_grad_.data() + (static_cast<std::ptrdiff_t>(step) * 4 + gate) * width;
+  float* const by_folded = folded_grad_.data() + offset + gate * width;               // n, r, z
+  float* const by_w_hh = w_hh_grad_.data() + offset + std::max(gate - 1, 0) * width;  // r, z, hn
+  float* const by_bias = bias_grad_.data() + (static_cast<std::ptrdiff_t>(step) * 4 + gate) * width;
   const bool in_message = gate < 3;
   const bool in_state = gate > 0;
   for (int row = live; row < width; ++row) {  // the state is still padding there
-    if (in_message) std::fill_n(by_folded + static_cast<std::ptrdiff_t>(row) * 3 * width, width, T{0});
-    if (in_state) std::fill_n(by_w_hh + static_cast<std::ptrdiff_t>(row) * 3 * width, width, T{0});
+    if (in_message) std::fill_n(by_folded + static_cast<std::ptrdiff_t>(row) * 3 * width, width, 0.0f);
+    if (in_state) std::fill_n(by_w_hh + static_cast<std::ptrdiff_t>(row) * 3 * width, width, 0.0f);
   }
-  std::fill_n(by_bias, width, T{0});
-  static thread_local PackedMatrix<T> dgates;
+  std::fill_n(by_bias, width, 0.0f);
+  static thread_local PackedMatrix<float> dgates;
   for (int first = 0; first < nodes; first += kBlockNodes) {
     const int count = std::min(kBlockNodes, nodes - first);
     const std::ptrdiff_t rows = step * stride + static_cast<std::ptrdiff_t>(first) * width;
-    const T* const block = gates_.data() + 4 * rows + gate * width;
+    const float* const block = gates_.data() + 4 * rows + gate * width;
     dgates.set(count, width, Op::kNone, block, 4 * width);
     if (in_message) {
       gemm(Op::kTranspose, live, width, count, message_.data() + rows, width, dgates, first > 0, by_folded, 3 * width);
@@ -203,15 +193,14 @@ void GatedGraphConv<T>::weight_products(int step, int gate, int nodes) {
       gemm(Op::kTranspose, live, width, count, state_.data() + rows, width, dgates, first > 0, by_w_hh, 3 * width);
     }
     for (int node = 0; node < count; ++node) {
-      const T* const row = block + static_cast<std::ptrdiff_t>(node) * 4 * width;
+      const float* const row = block + static_cast<std::ptrdiff_t>(node) * 4 * width;
 #pragma omp simd
       for (int i = 0; i < width; ++i) by_bias[i] += row[i];
     }
   }
 }
 
-template <typename T>
-void GatedGraphConv<T>::unfold(const GatedGraphConvTensors<T>& grad) {
+void GatedGraphConv::unfold(const GatedGraphConvTensors<float>& grad) {
   const int width = shape_.width;
   const int steps = shape_.steps;
   const std::ptrdiff_t square = static_cast<std::ptrdiff_t>(width) * width;
@@ -231,13 +220,13 @@ void GatedGraphConv<T>::unfold(const GatedGraphConvTensors<T>& grad) {
       }
     } else {  // by W_hh: the sum over l, transposed
       const int block = task - steps - 3;
-      T* const out = grad.w_hh + block * square;
+      float* const out = grad.w_hh + block * square;
       for (int step = 0; step < steps; ++step) {
-        const T* const in = w_hh_grad_.data() + step * 3 * square + block * width;
+        const float* const in = w_hh_grad_.data() + step * 3 * square + block * width;
         for (int column = 0; column < width; ++column) {
-          T* const row = out + static_cast<std::ptrdiff_t>(column) * width;
+          float* const row = out + static_cast<std::ptrdiff_t>(column) * width;
           for (int i = 0; i < width; ++i) {
-            const T value = in[static_cast<std::ptrdiff_t>(i) * 3 * width + column];
+            const float value = in[static_cast<std::ptrdiff_t>(i) * 3 * width + column];
             row[i] = step == 0 ? value : row[i] + value;
           }
         }
@@ -247,16 +236,13 @@ void GatedGraphConv<T>::unfold(const GatedGraphConvTensors<T>& grad) {
   for (int step = 1; step < steps; ++step) {
     for (int i = 0; i < 4 * width; ++i) bias_grad_[i] += bias_grad_[static_cast<std::size_t>(step) * 4 * width + i];
   }
-  const T* const n = bias_grad_.data();
-  const T* const r_z = n + width;
-  const T* const hn = n + 3 * width;
+  const float* const n = bias_grad_.data();
+  const float* const r_z = n + width;
+  const float* const hn = n + 3 * width;
   std::copy_n(r_z, 2 * width, grad.b_ih);
   std::copy_n(r_z, 2 * width, grad.b_hh);
   std::copy_n(n, width, grad.b_ih + 2 * width);
   std::copy_n(hn, width, grad.b_hh + 2 * width);
 }
-
-template class GatedGraphConv<float>;
-template class GatedGraphConv<double>;
 
 }  // namespace graphdrl

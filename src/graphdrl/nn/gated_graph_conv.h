@@ -36,23 +36,22 @@ struct GatedGraphConvShape {
 };
 
 // One layer's folded weights and what it keeps from forward to backward; memory grows to the largest batch seen and is
-// then reused. Not thread safe; it spreads its work over parallel_for by itself. T is float, or double for checks.
-template <typename T>
+// then reused. Not thread safe; it spreads its work over parallel_for by itself.
 class GatedGraphConv {
  public:
   explicit GatedGraphConv(GatedGraphConvShape shape);
 
   // Takes the weights for all later calls; they are read again by backward(), so they must stay until then.
-  void set_weights(const GatedGraphConvTensors<const T>& weights);
+  void set_weights(const GatedGraphConvTensors<const float>& weights);
 
   // x: [N, F], out: [N, D]. With `keep`, everything backward() needs stays in the layer, L times the memory.
   // REQUIRES: set_weights() was called; every graph is undirected.
-  void forward(const GraphBatch& batch, const T* x, T* out, bool keep);
+  void forward(const GraphBatch& batch, const float* x, float* out, bool keep);
 
   // After forward(batch, …, keep = true), once. out, grad_out: [N, D], the output and the loss's derivative by it;
   // grad_x: [N, F] or null where it is not asked for; the gradients of the weights are overwritten.
-  void backward(const GraphBatch& batch, const T* out, const T* grad_out, T* grad_x,
-                const GatedGraphConvTensors<T>& grad);
+  void backward(const GraphBatch& batch, const float* out, const float* grad_out, float* grad_x,
+                const GatedGraphConvTensors<float>& grad);
 
  private:
   struct Chunk {
@@ -63,32 +62,33 @@ class GatedGraphConv {
   };
 
   void cut_into_chunks(const GraphBatch& batch);
-  void forward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* x, T* out, bool keep);
-  void backward_chunk(const GraphBatch& batch, const Chunk& chunk, const T* out, const T* grad_out, T* grad_x);
+  void forward_chunk(const GraphBatch& batch, const Chunk& chunk, const float* x, float* out, bool keep);
+  void backward_chunk(const GraphBatch& batch, const Chunk& chunk, const float* out, const float* grad_out,
+                      float* grad_x);
   void weight_products(int step, int gate, int nodes);
-  void unfold(const GatedGraphConvTensors<T>& grad);
+  void unfold(const GatedGraphConvTensors<float>& grad);
 
   // Columns of h that can differ from 0 before step l.
   int live_columns(int step) const { return step == 0 ? shape_.inputs : shape_.width; }
 
   GatedGraphConvShape shape_;
-  GatedGraphConvTensors<const T> weights_{};
-  PackedMatrix<T> w_ih_;                            // W_ihᵀ: [D, 3D], columns in the order n, r, z
-  PackedMatrix<T> w_hh_reset_update_;               // W_hhᵀ: [D, 2D], r and z
-  PackedMatrix<T> w_hh_new_;                        // [D, D], hn
-  PackedMatrix<T> w_hh_;                            // W_hh: [3D, D]; for backward only
-  std::vector<PackedMatrix<T>> folded_;             // P_l: [D, 3D], columns in the order n, r, z
-  std::vector<PackedMatrix<T>> folded_transposed_;  // P_lᵀ: [3D, D]; for backward only
-  std::vector<T> bias_;                             // [4D], in the order n, r, z, hn
-  std::vector<T> folded_grad_;                      // by P: [L, D, 3D]
-  std::vector<T> w_hh_grad_;                        // by W_hhᵀ, a step's share each: [L, D, 3D], r, z, hn
-  std::vector<T> bias_grad_;                        // [L, 4D]
+  GatedGraphConvTensors<const float> weights_{};
+  PackedMatrix<float> w_ih_;                            // W_ihᵀ: [D, 3D], columns in the order n, r, z
+  PackedMatrix<float> w_hh_reset_update_;               // W_hhᵀ: [D, 2D], r and z
+  PackedMatrix<float> w_hh_new_;                        // [D, D], hn
+  PackedMatrix<float> w_hh_;                            // W_hh: [3D, D]; for backward only
+  std::vector<PackedMatrix<float>> folded_;             // P_l: [D, 3D], columns in the order n, r, z
+  std::vector<PackedMatrix<float>> folded_transposed_;  // P_lᵀ: [3D, D]; for backward only
+  std::vector<float> bias_;                             // [4D], in the order n, r, z, hn
+  std::vector<float> folded_grad_;                      // by P: [L, D, 3D]
+  std::vector<float> w_hh_grad_;                        // by W_hhᵀ, a step's share each: [L, D, 3D], r, z, hn
+  std::vector<float> bias_grad_;                        // [L, 4D]
   std::vector<Chunk> chunks_;
-  std::vector<T> state_;    // h before step l: [L, N, D]; without keep only [N, D]
-  std::vector<T> message_;  // A h: likewise
-  std::vector<T> gates_;    // [L, N, 4D]; likewise
-  std::vector<T> grad_;     // by the state: [N, D]
-  std::vector<T> scratch_;  // by the message: [N, D]
+  std::vector<float> state_;    // h before step l: [L, N, D]; without keep only [N, D]
+  std::vector<float> message_;  // A h: likewise
+  std::vector<float> gates_;    // [L, N, 4D]; likewise
+  std::vector<float> grad_;     // by the state: [N, D]
+  std::vector<float> scratch_;  // by the message: [N, D]
 };
 
 }  // namespace graphdrl

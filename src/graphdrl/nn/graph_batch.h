@@ -4,11 +4,18 @@
 // layer, L propagation steps, A actions. Matrices are row-major.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "graphdrl/graph/graph.h"
 
 namespace graphdrl {
+
+// A row of [rows, width].
+template <typename T>
+T* row_of(T* values, int row, int width) {
+  return values + static_cast<std::ptrdiff_t>(row) * width;
+}
 
 // The graphs are not copied and must outlive the batch; one graph may stand in it many times.
 class GraphBatch {

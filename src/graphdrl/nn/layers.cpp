@@ -38,14 +38,6 @@ std::vector<double> column_sums(int rows, int values, const Term& term) {
   return total;
 }
 
-const float* row_of(const float* x, int row, int width) {
-  return x + static_cast<std::ptrdiff_t>(row) * width;
-}
-
-float* row_of(float* x, int row, int width) {
-  return x + static_cast<std::ptrdiff_t>(row) * width;
-}
-
 }  // namespace
 
 void linear(LinearShape shape, int rows, const float* x, const LinearTensors<const float>& weights, float* out) {

@@ -32,6 +32,12 @@ class OnnxModel {
   // A dimension is a name where it differs from call to call, else a number.
   using Dimension = std::variant<const char*, std::int64_t>;
 
+  // An attribute of a node.
+  struct Attribute {
+    const char* name;
+    std::variant<std::int64_t, double, const char*> value;
+  };
+
   std::string input(const std::string& name, onnx::TensorProto::DataType type, const std::vector<Dimension>& shape) {
     describe(*graph().add_input(), name, type, shape);
     return name;
@@ -55,7 +61,7 @@ class OnnxModel {
   std::string constant(const std::vector<std::int64_t>& values) {
     onnx::TensorProto& tensor = constant_of(onnx::TensorProto::INT64);
     tensor.add_dims(std::ssize(values));
-    for (const std::int64_t value : values) tensor.add_int64_data(value);
+    tensor.mutable_int64_data()->Assign(values.begin(), values.end());
     return tensor.name();
   }
   std::string index(std::int64_t value) {
@@ -69,41 +75,31 @@ class OnnxModel {
     return tensor.name();
   }
 
-  class Node {
-   public:
-    explicit Node(onnx::NodeProto& node) : node_(node) {}
-    Node& with(const char* name, std::int64_t value) {
-      attribute(name, onnx::AttributeProto::INT).set_i(value);
-      return *this;
-    }
-    Node& with(const char* name, double value) {
-      attribute(name, onnx::AttributeProto::FLOAT).set_f(static_cast<float>(value));
-      return *this;
-    }
-    Node& with(const char* name, const char* value) {
-      attribute(name, onnx::AttributeProto::STRING).set_s(value);
-      return *this;
-    }
-    std::string name(int output = 0) const { return node_.output(output); }
-    operator std::string() const { return name(); }  // NOLINT(google-explicit-constructor): a node is its output
-
-   private:
-    onnx::AttributeProto& attribute(const char* name, onnx::AttributeProto::AttributeType type) {
-      onnx::AttributeProto& attribute = *node_.add_attribute();
-      attribute.set_name(name);
-      attribute.set_type(type);
-      return attribute;
-    }
-
-    onnx::NodeProto& node_;
-  };
-
-  Node add(const char* op, const Names& inputs, int outputs = 1) {
+  // Adds a node; gives its outputs.
+  Names add_node(const char* op, const Names& inputs, int outputs, const std::vector<Attribute>& attributes) {
     onnx::NodeProto& node = *graph().add_node();
     node.set_op_type(op);
     for (const std::string& name : inputs) node.add_input(name);
     for (int i = 0; i < outputs; ++i) node.add_output(fmt::format("{}_{}", op, ++values_));
-    return Node(node);
+    for (const auto& [name, value] : attributes) {
+      onnx::AttributeProto& attribute = *node.add_attribute();
+      attribute.set_name(name);
+      if (const std::int64_t* const integer = std::get_if<std::int64_t>(&value)) {
+        attribute.set_type(onnx::AttributeProto::INT);
+        attribute.set_i(*integer);
+      } else if (const double* const number = std::get_if<double>(&value)) {
+        attribute.set_type(onnx::AttributeProto::FLOAT);
+        attribute.set_f(static_cast<float>(*number));
+      } else {
+        attribute.set_type(onnx::AttributeProto::STRING);
+        attribute.set_s(std::get<const char*>(value));
+      }
+    }
+    return {node.output().begin(), node.output().end()};
+  }
+  // With one output.
+  std::string add(const char* op, const Names& inputs, const std::vector<Attribute>& attributes = {}) {
+    return add_node(op, inputs, 1, attributes).front();
   }
 
   // Gives the output of the last node a name.
@@ -155,7 +151,7 @@ GraphInputs add_graph_inputs(OnnxModel& model) {
   const std::string batch = model.input("batch", onnx::TensorProto::INT64, {"N"});
   const std::string last_axis = model.constant({1});
   const std::string targets = model.add("Gather", {edges, model.index(1)});
-  const std::string last_graph = model.add("ReduceMax", {batch}).with("keepdims", std::int64_t{1});
+  const std::string last_graph = model.add("ReduceMax", {batch}, {{"keepdims", 1}});
   return {.sources = model.add("Gather", {edges, model.index(0)}),
           .targets = model.add("Unsqueeze", {targets, last_axis}),
           .batch = batch,
@@ -168,18 +164,18 @@ GraphInputs add_graph_inputs(OnnxModel& model) {
 std::string add_rows(OnnxModel& model, const std::string& shape, const std::string& to, const std::string& rows) {
   const std::string zeros = model.add("ConstantOfShape", {shape});
   const std::string indices = model.add("Expand", {to, model.add("Shape", {rows})});
-  return model.add("ScatterElements", {zeros, indices, rows}).with("axis", std::int64_t{0}).with("reduction", "add");
+  return model.add("ScatterElements", {zeros, indices, rows}, {{"axis", 0}, {"reduction", "add"}});
 }
 
 // Sums each graph's rows: [N, width] to [B, width].
 std::string pool(OnnxModel& model, const GraphInputs& graphs, int width, const std::string& x) {
-  const std::string shape = model.add("Concat", {graphs.count, model.constant({width})}).with("axis", std::int64_t{0});
+  const std::string shape = model.add("Concat", {graphs.count, model.constant({width})}, {{"axis", 0}});
   return add_rows(model, shape, graphs.graphs, x);
 }
 
 // x Wᵀ + b.
 std::string affine(OnnxModel& model, const std::string& x, const std::string& weight, const std::string& bias) {
-  return model.add("Gemm", {x, weight, bias}).with("transB", std::int64_t{1});
+  return model.add("Gemm", {x, weight, bias}, {{"transB", 1}});
 }
 
 // As GatedGraphConv, by PyTorch's formulas.
@@ -195,16 +191,16 @@ std::string gated_graph_conv(OnnxModel& model, const GraphInputs& graphs, const 
     const std::string of_message = affine(model, message, name + ".rnn.weight_ih", name + ".rnn.bias_ih");
     const std::string of_state = affine(model, h, name + ".rnn.weight_hh", name + ".rnn.bias_hh");
     const std::string thirds = model.constant({shape.width, shape.width, shape.width});
-    const OnnxModel::Node i = model.add("Split", {of_message, thirds}, 3).with("axis", std::int64_t{1});
-    const OnnxModel::Node s = model.add("Split", {of_state, thirds}, 3).with("axis", std::int64_t{1});
-    const std::string r = model.add("Sigmoid", {model.add("Add", {i.name(0), s.name(0)})});
-    const std::string z = model.add("Sigmoid", {model.add("Add", {i.name(1), s.name(1)})});
-    const std::string n = model.add("Tanh", {model.add("Add", {i.name(2), model.add("Mul", {r, s.name(2)})})});
+    const Names i = model.add_node("Split", {of_message, thirds}, 3, {{"axis", 1}});
+    const Names s = model.add_node("Split", {of_state, thirds}, 3, {{"axis", 1}});
+    const std::string r = model.add("Sigmoid", {model.add("Add", {i[0], s[0]})});
+    const std::string z = model.add("Sigmoid", {model.add("Add", {i[1], s[1]})});
+    const std::string n = model.add("Tanh", {model.add("Add", {i[2], model.add("Mul", {r, s[2]})})});
     // (1 - z) n + z h
     const std::string change = model.add("Mul", {z, model.add("Sub", {h, n})});
     h = model.add("Add", {n, change});
   }
-  return shape.elu ? std::string(model.add("Elu", {h})) : h;
+  return shape.elu ? model.add("Elu", {h}) : h;
 }
 
 }  // namespace
@@ -218,10 +214,9 @@ void write_onnx(const std::filesystem::path& path, const PaperParameters& parame
     x = gated_graph_conv(model, graphs, fmt::format("conv{}", layer), kConvShapes[layer - 1], x);
     if (layer == kConvShapes.size()) break;
     const auto of_norm = [&](const char* tensor) { return fmt::format("bn{}.{}", layer, tensor); };
-    x = model
-            .add("BatchNormalization",
-                 {x, of_norm("weight"), of_norm("bias"), of_norm("running_mean"), of_norm("running_var")})
-            .with("epsilon", kBatchNormEpsilon);
+    x = model.add("BatchNormalization",
+                  {x, of_norm("weight"), of_norm("bias"), of_norm("running_mean"), of_norm("running_var")},
+                  {{"epsilon", kBatchNormEpsilon}});
   }
   const std::string pooled = pool(model, graphs, kFc1Shape.inputs, x);
   const std::string hidden = model.add("Elu", {affine(model, pooled, "fc1.weight", "fc1.bias")});
@@ -246,12 +241,10 @@ void write_onnx(const std::filesystem::path& path, const ExplorerParameters& par
   const std::string embedded = gated_graph_conv(model, graphs, "conv", kExplorerConvShape, node_x);
   const std::string ones = model.add("Expand", {model.scalar(1), model.add("Shape", {graphs.graphs})});
   const std::string means = model.add("Div", {pool(model, graphs, kNodeWidth, embedded), pool(model, graphs, 1, ones)});
-  const std::string joined =
-      model
-          .add("Concat", {model.add("Gather", {embedded, target}),
-                          model.add("Gather", {embedded, model.add("Gather", {current, state})}),
-                          model.add("Gather", {means, state}), model.add("Gather", {node_x, target}), visit_x})
-          .with("axis", std::int64_t{1});
+  const Names parts = {model.add("Gather", {embedded, target}),
+                       model.add("Gather", {embedded, model.add("Gather", {current, state})}),
+                       model.add("Gather", {means, state}), model.add("Gather", {node_x, target}), visit_x};
+  const std::string joined = model.add("Concat", parts, {{"axis", 1}});
   const std::string hidden = model.add("Elu", {affine(model, joined, "head1.weight", "head1.bias")});
   const std::string column = affine(model, hidden, "head2.weight", "head2.bias");
   model.add("Squeeze", {column, model.constant({1})});

@@ -26,22 +26,6 @@ inline constexpr LinearShape kFc2Shape = {kHiddenWidth, kActionCount};
 inline constexpr double kBatchNormEpsilon = 1e-5;
 inline constexpr double kBatchNormMomentum = 0.1;
 
-// Where the tensors of the network stand, or those of their gradients. T is float or const float.
-template <typename T>
-struct PaperTensors {
-  // Of batch normalisation: [D] each.
-  struct Norm {
-    T* weight;
-    T* bias;
-    T* running_mean;
-    T* running_variance;
-  };
-  std::array<GatedGraphConvTensors<T>, 3> convs;
-  std::array<Norm, 2> norms;  // after the first two
-  LinearTensors<T> fc1;
-  LinearTensors<T> fc2;
-};
-
 class PaperParameters : public ParameterBuffer {
  public:
   // Initialised as PyTorch and PyTorch Geometric do; batch norm 1 and 0, its running statistics 0 and 1.
@@ -49,6 +33,9 @@ class PaperParameters : public ParameterBuffer {
 
   // All values 0: a place for gradients, or to be filled.
   PaperParameters() : ParameterBuffer(specs()) {}
+  // Of a file. Throws Error as ParameterBuffer does.
+  explicit PaperParameters(const Safetensors& file, const std::string& prefix = "")
+      : ParameterBuffer(specs(), file, prefix) {}
 
   static const std::vector<TensorSpec>& specs();
   static std::size_t trainable_count() { return graphdrl::trainable_count(specs()); }  // 240,678
@@ -59,17 +46,7 @@ class PaperParameters : public ParameterBuffer {
   // The network, as policy files describe it. The key "wall" is there only where it is not the border.
   nlohmann::json description() const;
 
-  // They point into values().
-  PaperTensors<float> tensors();
-  PaperTensors<const float> tensors() const;
-
-  static PaperParameters from_file(const Safetensors& file, const std::string& prefix = "") {
-    return PaperParameters(ParameterBuffer(specs(), file, prefix));
-  }
-
  private:
-  explicit PaperParameters(ParameterBuffer buffer) : ParameterBuffer(std::move(buffer)) {}
-
   PaperWall wall_ = PaperWall::kBorder;
 };
 
@@ -95,24 +72,26 @@ class PaperNetwork {
   // After q_values() with the same batch and keep_scale. grad_q: [B, A], the loss's derivative by q; `grad` is
   // overwritten by that by the parameters, but for the running statistics, which have none.
   void backward(const GraphBatch& batch, std::span<const float> keep_scale, std::span<const float> grad_q,
-                const PaperTensors<float>& grad);
+                PaperParameters& grad);
 
   // Moves running statistics towards those of the last q_values() in train mode, which had `nodes` nodes.
-  void move_statistics(int nodes, const PaperTensors<float>& parameters) const;
+  void move_statistics(int nodes, PaperParameters& parameters) const;
 
  private:
   struct Layer {
     explicit Layer(const GatedGraphConvShape& shape) : conv(shape) {}
 
-    GatedGraphConv<float> conv;
+    GatedGraphConv conv;
     std::vector<float> output;      // [N, D]
     std::vector<float> grad;        // by it: [N, D]
-    ColumnStatistics running;       // of the batch norm after it, where there is one
+    BatchNormTensors norm{};        // after it, but for the last
+    ColumnStatistics running;       // of the norm
     ColumnStatistics of_batch;      // in train mode
     std::vector<float> normalised;  // [N, D], in train mode
   };
 
-  PaperTensors<const float> tensors_{};
+  LinearTensors<const float> fc1_{};
+  LinearTensors<const float> fc2_{};
   std::vector<Layer> layers_;
   std::vector<float> pooled_;       // [B, 128]
   std::vector<float> activated_;    // [B, 256], before the dropout

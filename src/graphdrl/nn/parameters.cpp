@@ -7,33 +7,38 @@
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/note.h"
 #include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
-constexpr const char* kDescriptionKey = "network";
-}
 
-void TensorList::add(std::string name, Shape shape, float bound, bool trainable) {
+constexpr const char* kDescriptionKey = "network";
+constexpr const char* kLayoutKey = "layout";
+constexpr const char* kLayout = "2";  // since it there is a checksum; files before it have no layout
+
+}  // namespace
+
+void add_tensor(std::vector<TensorSpec>& specs, std::string name, Shape shape, float bound, bool trainable) {
   std::size_t size = 1;
   for (const std::int64_t extent : shape) size *= static_cast<std::size_t>(extent);
-  const std::size_t offset = specs_.empty() ? 0 : specs_.back().offset + specs_.back().size;
-  specs_.push_back({std::move(name), std::move(shape), trainable, bound, offset, size});
+  const std::size_t offset = specs.empty() ? 0 : specs.back().offset + specs.back().size;
+  specs.push_back({std::move(name), std::move(shape), trainable, bound, offset, size});
 }
 
-void TensorList::add_conv(const std::string& name, const GatedGraphConvShape& shape) {
+void add_conv(std::vector<TensorSpec>& specs, const std::string& name, const GatedGraphConvShape& shape) {
   const float bound = 1.0f / std::sqrt(static_cast<float>(shape.width));
-  add(name + ".weight", {shape.steps, shape.width, shape.width}, bound);
-  add(name + ".rnn.weight_ih", {3 * shape.width, shape.width}, bound);
-  add(name + ".rnn.weight_hh", {3 * shape.width, shape.width}, bound);
-  add(name + ".rnn.bias_ih", {3 * shape.width}, bound);
-  add(name + ".rnn.bias_hh", {3 * shape.width}, bound);
+  add_tensor(specs, name + ".weight", {shape.steps, shape.width, shape.width}, bound);
+  add_tensor(specs, name + ".rnn.weight_ih", {3 * shape.width, shape.width}, bound);
+  add_tensor(specs, name + ".rnn.weight_hh", {3 * shape.width, shape.width}, bound);
+  add_tensor(specs, name + ".rnn.bias_ih", {3 * shape.width}, bound);
+  add_tensor(specs, name + ".rnn.bias_hh", {3 * shape.width}, bound);
 }
 
-void TensorList::add_linear(const std::string& name, const LinearShape& shape) {
+void add_linear(std::vector<TensorSpec>& specs, const std::string& name, const LinearShape& shape) {
   const float bound = 1.0f / std::sqrt(static_cast<float>(shape.inputs));
-  add(name + ".weight", {shape.outputs, shape.inputs}, bound);
-  add(name + ".bias", {shape.outputs}, bound);
+  add_tensor(specs, name + ".weight", {shape.outputs, shape.inputs}, bound);
+  add_tensor(specs, name + ".bias", {shape.outputs}, bound);
 }
 
 ParameterBuffer::ParameterBuffer(const std::vector<TensorSpec>& specs)
@@ -70,16 +75,8 @@ void ParameterBuffer::draw(Rng& rng) {
   }
 }
 
-const TensorSpec& ParameterBuffer::find(const std::string& name) const {
-  return *std::find_if(specs_->begin(), specs_->end(), [&](const TensorSpec& spec) { return spec.name == name; });
-}
-
-float* ParameterBuffer::tensor(const std::string& name) {
-  return values_.data() + find(name).offset;
-}
-
-const float* ParameterBuffer::tensor(const std::string& name) const {
-  return values_.data() + find(name).offset;
+std::size_t ParameterBuffer::offset_of(const std::string& name) const {
+  return std::ranges::find(*specs_, name, &TensorSpec::name)->offset;
 }
 
 GatedGraphConvTensors<float> ParameterBuffer::conv(const std::string& name) {
@@ -103,6 +100,15 @@ LinearTensors<const float> ParameterBuffer::linear(const std::string& name) cons
   return {.weight = tensor(name + ".weight"), .bias = tensor(name + ".bias")};
 }
 
+std::string ParameterBuffer::first_not_finite() const {
+  const auto found = std::find_if_not(values_.begin(), values_.end(), [](float value) { return std::isfinite(value); });
+  const auto index = static_cast<std::size_t>(found - values_.begin());
+  for (const TensorSpec& spec : *specs_) {
+    if (index < spec.offset + spec.size) return spec.name;
+  }
+  return "";
+}
+
 std::vector<TensorView> ParameterBuffer::views(const std::string& prefix) const {
   std::vector<TensorView> views;
   for (const TensorSpec& spec : *specs_) {
@@ -119,7 +125,7 @@ std::size_t trainable_count(const std::vector<TensorSpec>& specs) {
 
 void write_policy_file(const std::filesystem::path& path, const ParameterBuffer& parameters,
                        const nlohmann::json& description) {
-  write_safetensors(path, parameters.views(), {{kDescriptionKey, description.dump()}});
+  write_safetensors(path, parameters.views(), {{kDescriptionKey, description.dump()}, {kLayoutKey, kLayout}});
 }
 
 nlohmann::json policy_description(const Safetensors& file) {
@@ -127,12 +133,22 @@ nlohmann::json policy_description(const Safetensors& file) {
   if (text == file.metadata().end()) {
     throw Error({.what = "not a policy file", .expected = "a network's description", .where = file.source()});
   }
+  if (const auto layout = file.metadata().find(kLayoutKey); layout != file.metadata().end()) {
+    if (layout->second != kLayout) {
+      throw Error({.what = "a policy file of another version of graphdrl",
+                   .expected = std::string("layout ") + kLayout,
+                   .got = in_quotes(layout->second),
+                   .where = file.source()});
+    }
+    file.require_checksum();
+  }
   return parse_json(text->second, file.source(), "a network's description in the metadata");
 }
 
 void require_description(const Safetensors& file, const nlohmann::json& expected,
                          const std::vector<TensorSpec>& specs) {
   const auto found = policy_description(file);
+  if (!file.has_checksum()) note(file.source() + ": no checksum: whether the policy is undamaged cannot be told");
   for (const auto& [key, value] : expected.items()) {
     if (found.is_object() && found.contains(key) && found[key] == value) continue;
     const std::string got = found.is_object() && found.contains(key) ? shortened(found[key], 200) : "nothing";

@@ -24,20 +24,12 @@ struct TensorSpec {
   std::size_t size;
 };
 
-// Lists a network's tensors in the order of the buffer; the trainable ones must come first.
-class TensorList {
- public:
-  void add(std::string name, Shape shape, float bound, bool trainable = true);
-  // NAME.weight [L, D, D], NAME.rnn.*; within ±1/√D at the start, as in PyTorch Geometric.
-  void add_conv(const std::string& name, const GatedGraphConvShape& shape);
-  // NAME.weight [outputs, inputs], NAME.bias; within ±1/√inputs at the start, as in PyTorch.
-  void add_linear(const std::string& name, const LinearShape& shape);
-
-  std::vector<TensorSpec> specs() && { return std::move(specs_); }
-
- private:
-  std::vector<TensorSpec> specs_;
-};
+// List a network's tensors in the order of the buffer; the trainable ones must come first.
+void add_tensor(std::vector<TensorSpec>& specs, std::string name, Shape shape, float bound, bool trainable = true);
+// NAME.weight [L, D, D], NAME.rnn.*; within ±1/√D at the start, as in PyTorch Geometric.
+void add_conv(std::vector<TensorSpec>& specs, const std::string& name, const GatedGraphConvShape& shape);
+// NAME.weight [outputs, inputs], NAME.bias; within ±1/√inputs at the start, as in PyTorch.
+void add_linear(std::vector<TensorSpec>& specs, const std::string& name, const LinearShape& shape);
 
 // The values. The specs must outlive it.
 class ParameterBuffer {
@@ -58,18 +50,21 @@ class ParameterBuffer {
   std::span<float> values() { return values_; }
   std::span<const float> values() const { return values_; }
   // REQUIRES, of all that take a name: there is such a tensor, or such a layer.
-  float* tensor(const std::string& name);
-  const float* tensor(const std::string& name) const;
+  float* tensor(const std::string& name) { return values_.data() + offset_of(name); }
+  const float* tensor(const std::string& name) const { return values_.data() + offset_of(name); }
   GatedGraphConvTensors<float> conv(const std::string& name);
   GatedGraphConvTensors<const float> conv(const std::string& name) const;
   LinearTensors<float> linear(const std::string& name);
   LinearTensors<const float> linear(const std::string& name) const;
 
+  // The name of the first tensor with a value that is not finite; empty where there is none.
+  std::string first_not_finite() const;
+
   // The tensors under their names, with `prefix` before each; for files. The values stay this object's.
   std::vector<TensorView> views(const std::string& prefix = "") const;
 
  private:
-  const TensorSpec& find(const std::string& name) const;
+  std::size_t offset_of(const std::string& name) const;
 
   const std::vector<TensorSpec>* specs_;
   std::vector<float> values_;
@@ -81,10 +76,12 @@ std::size_t trainable_count(const std::vector<TensorSpec>& specs);
 void write_policy_file(const std::filesystem::path& path, const ParameterBuffer& parameters,
                        const nlohmann::json& description);
 
-// The description in a policy file. Throws Error where there is none, or no JSON.
+// The description in a policy file. Throws Error where there is none, or no JSON, and where the checksum is missing
+// that every file of this layout has.
 nlohmann::json policy_description(const Safetensors& file);
 
-// Throws Error where the file's description is not the one expected, or its tensors are not as many as the specs.
+// Throws Error where the file's description is not the one expected, or its tensors are not as many as the specs. Notes
+// that an older file has no checksum.
 void require_description(const Safetensors& file, const nlohmann::json& expected, const std::vector<TensorSpec>& specs);
 
 }  // namespace graphdrl

@@ -15,39 +15,30 @@ namespace graphdrl {
 // h' = (1 - z) n + z h,  r = σ(r),  z = σ(z),  n = tanh(n + r · hn)  [Cho et al. 2014, as PyTorch's GRUCell]
 // gates: [rows, 4D] in and out; bias: [4D]; h: [rows, D]; h_next: [rows, D], may be h itself.
 void gru_forward(int rows, int width, const float* bias, float* gates, const float* h, float* h_next);
-void gru_forward(int rows, int width, const double* bias, double* gates, const double* h, double* h_next);
 
 // gates: [rows, 4D], from gru_forward in, derivatives out; h: [rows, D], the state before the step;
 // grad: [rows, D], by h' in, by h through the z gate alone out.
 void gru_backward(int rows, int width, float* gates, const float* h, float* grad);
-void gru_backward(int rows, int width, double* gates, const double* h, double* grad);
 
 // out[i] = Σ_{j in N(i)} in[j], or out[i] += …; in, out: [nodes, columns] with rows `width` apart
 // REQUIRES: in and out do not overlap.
 void sum_neighbours(const Graph& graph, int columns, int width, const float* in, bool accumulate, float* out);
-void sum_neighbours(const Graph& graph, int columns, int width, const double* in, bool accumulate, double* out);
 
 // x = x > 0 ? x : exp(x) - 1  [Clevert et al. 2015]
 void elu(float* x, std::size_t count);
-void elu(double* x, std::size_t count);
 
 // grad, by elu(x) in, by x out; y: elu(x)
 void elu_backward(const float* y, float* grad, std::size_t count);
-void elu_backward(const double* y, double* grad, std::size_t count);
 
-// What Adam's formula needs beside the arrays. The two bias corrections of step t are folded into rate and
-// second_scale.
-struct AdamStep {
-  float clamp;  // gradients are cut to [-clamp, clamp] first
-  float beta1;
-  float beta2;
-  float rate;          // learning rate / (1 - beta1^t)
-  float second_scale;  // 1 / √(1 - beta2^t)
-  float epsilon;
-};
+inline constexpr double kAdamBeta1 = 0.9;
+inline constexpr double kAdamBeta2 = 0.999;
+inline constexpr double kAdamEpsilon = 1e-8;
+inline constexpr double kGradientClamp = 1.0;  // gradients are cut to ±1 first, one by one, as in the author's code
 
 // m = β1 m + (1 - β1) g,  v = β2 v + (1 - β2) g²,  θ -= rate · m / (√v · second_scale + ε)  [Kingma and Ba 2015]
-void adam_update(const AdamStep& step, const float* grad, float* first, float* second, float* value, std::size_t count);
+// The bias corrections of step t are in rate = learning rate / (1 - β1^t) and second_scale = 1 / √(1 - β2^t).
+void adam_update(float rate, float second_scale, const float* grad, float* first, float* second, float* value,
+                 std::size_t count);
 
 // value += share · (goal - value)
 void move_towards(const float* goal, float share, float* value, std::size_t count);

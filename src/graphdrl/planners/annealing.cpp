@@ -4,23 +4,32 @@
 #include <cmath>
 
 namespace graphdrl {
+namespace {
 
-bool Annealing::is_selective(const Targets& targets, double prize, const AnnealingOptions& options) {
-  return prize < (1 - options.selective_share) * targets.total_prize();
+constexpr double kSelectiveShare = 0.3;    // of the prize: a start that leaves out more is selective
+constexpr double kLastTemperature = 0.08;  // in mean prizes
+constexpr double kPrice = 0.6;  // worth of the whole budget, in prizes of the best route: cheaper routes are better
+constexpr int kLongestMoved = 2000;  // targets of a region that moves: half of a route in worlds of up to 60x60
+constexpr int kLooks = 256;  // the best route is copied at most every T / kLooks steps of T targets: a copy costs T
+
+}  // namespace
+
+bool Annealing::is_selective(const Targets& targets, double prize) {
+  return prize < (1 - kSelectiveShare) * targets.total_prize();
 }
 
-Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed, const AnnealingOptions& options)
-    : draft_(targets, limit, seed, options),
-      two_opt_(targets),
-      steps_per_look_(std::max(1, targets.end() / options.looks)) {}
+Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed, const Tour& start)
+    : draft_(targets, limit, seed), two_opt_(targets), steps_per_look_(std::max(1, targets.end() / kLooks)) {
+  this->start(start);
+}
 
-void Annealing::start(const std::vector<int>& order, const std::vector<double>& links) {
+void Annealing::start(const Tour& tour) {
   Route& route = draft_.route;
   const int end = draft_.targets.end();
-  route.assign(order, links);
+  route.assign(tour.order, tour.links);
   while (too_dear() && route.next(0) != end) route.remove(route.previous(end));
   route.keep();
-  draft_.selective = is_selective(draft_.targets, route.prize(), draft_.options);
+  draft_.selective = is_selective(draft_.targets, route.prize());
   remember();
 }
 
@@ -29,16 +38,16 @@ void Annealing::recombine(const std::vector<int>& other) {
   improve();
   if (too_dear()) draft_.route.undo();
   draft_.route.keep();
-  best_prize_ = -1;
+  best_.prize = -1;
   remember();
 }
 
 void Annealing::step(double progress) {
-  const AnnealingOptions::Style& style = draft_.style();
+  const Style& style = draft_.style();
   const int seed = draft_.random_target();
   if (style.region_share > 0 && draft_.rng.uniform() < style.region_share) {
-    const auto half = static_cast<int>(best_.size() / 2 + 1);
-    move_region(draft_, seed, static_cast<std::uint32_t>(std::min(half, draft_.options.longest_moved)));
+    const auto half = static_cast<int>(best_.order.size() / 2 + 1);
+    move_region(draft_, seed, static_cast<std::uint32_t>(std::min(half, kLongestMoved)));
   } else {
     ruin(draft_, seed);
     if (draft_.targets.symmetric()) {
@@ -48,7 +57,7 @@ void Annealing::step(double progress) {
   }
   improve();
   const double first = style.first_temperature;
-  if (accept(draft_.mean_prize * first * std::pow(draft_.options.last_temperature / first, progress))) {
+  if (accept(draft_.mean_prize * first * std::pow(kLastTemperature / first, progress))) {
     draft_.route.keep();
   } else {
     draft_.route.undo();
@@ -56,25 +65,25 @@ void Annealing::step(double progress) {
   if (++steps_ % steps_per_look_ == 0) remember();
 }
 
-const std::vector<int>& Annealing::best() {
+const Tour& Annealing::best() {
   remember();
   return best_;
 }
 
 void Annealing::remember() {
   const Route& route = draft_.route;
-  const double more = route.prize() - best_prize_;
+  const double more = route.prize() - best_.prize;
   const double rounding = kCostRounding * draft_.mean_prize;
-  if (more < -rounding || (more < rounding && route.cost() >= best_cost_ * (1 - kCostRounding))) return;
-  best_.clear();
-  best_links_.assign(1, route.link(0));
+  if (more < -rounding || (more < rounding && route.cost() >= best_.cost * (1 - kCostRounding))) return;
+  best_.order.clear();
+  best_.links.assign(1, route.link(0));
   for (int target = route.next(0); target != draft_.targets.end(); target = route.next(target)) {
-    best_.push_back(target);
-    best_links_.push_back(route.link(target));
+    best_.order.push_back(target);
+    best_.links.push_back(route.link(target));
   }
-  best_prize_ = route.prize();
-  best_cost_ = route.cost();
-  if (draft_.limit > 0) price_ = draft_.options.price * best_prize_ / draft_.limit;
+  best_.prize = route.prize();
+  best_.cost = route.cost();
+  if (draft_.limit > 0) price_ = kPrice * best_.prize / draft_.limit;
 }
 
 // Straight ways may cost more than those that they take the place of [Graph::complete()].

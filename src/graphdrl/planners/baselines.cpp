@@ -9,16 +9,6 @@ namespace {
 constexpr int kVisitsPerTick = 256;
 constexpr double kWalkingOn = 2;  // of the time that the nearest walk took, kept for walking on
 
-// Draws one of the actions that are allowed; kStop where none is.
-template <typename Allowed>
-int draw_action(const Observation& observation, const Allowed& allowed, Rng& rng) {
-  std::vector<int> actions;
-  for (int action = 0; action < observation.action_count(); ++action) {
-    if (allowed(action)) actions.push_back(action);
-  }
-  return actions.empty() ? kStop : actions[rng.below(static_cast<std::uint32_t>(actions.size()))];
-}
-
 // A depth-first walk under way. The trail leads from the start to where it stands.
 class DepthFirstWalk {
  public:
@@ -67,7 +57,7 @@ class DepthFirstWalk {
     for (; !trail_.empty(); trail_.pop_back()) {
       const NodeId node = trail_.back();
       if (first_unvisited(node) < 0) continue;
-      if (!way_to(node)) {
+      if (node != walk_.back() && !find_way(open_, walk_.back(), node, visited_, search_)) {
         cut_off.push_back(node);
         continue;
       }
@@ -77,7 +67,7 @@ class DepthFirstWalk {
     return false;
   }
 
-  // Along the way that way_to() found last, to the first node of it from which something is left, and there on.
+  // Along the way that find_way() found last, to the first node of it from which something is left, and there on.
   bool walk_back_to(NodeId goal) {
     std::vector<NodeId> way;
     if (goal != walk_.back()) search_.append_path_to(goal, way);
@@ -107,9 +97,6 @@ class DepthFirstWalk {
     return true;
   }
 
-  // Looks for the cheapest way through visited ground; false where there is none.
-  bool way_to(NodeId goal) { return goal == walk_.back() || find_way(open_, walk_.back(), goal, visited_, search_); }
-
   const Task& task_;
   const Graph& open_;
   NearestFirst& search_;
@@ -122,22 +109,28 @@ class DepthFirstWalk {
   int visits_ = 1;
 };
 
+// A plan that was cut short, walked on by the nearest rule.
+Plan walked_on(const Task& task, const Plan& plan, const Clock& clock) {
+  NodeSet visited = task.ground();
+  for (const NodeId node : plan.walk) visited.insert(node);
+  const Plan more = NearestPlanner().plan(
+      task.rest(plan.walk.back(), std::max(0.0, task.budget() - plan.cost), std::move(visited)), clock);
+  if (more.walk.size() == 1) return plan;
+  std::vector<NodeId> walk = plan.walk;
+  walk.insert(walk.end(), more.walk.begin() + 1, more.walk.end());
+  return plan_of_walk(task, std::move(walk));
+}
+
 }  // namespace
 
 void RandomPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& now = observations[i];
-    const bool directions = now.action_space == ActionSpace::kDirections;  // blocked ones too
-    const auto allowed = [&](int action) { return directions ? now.affordable(action) : now.legal(action); };
-    actions[i] = draw_action(now, allowed, rng_);
-  }
-}
-
-void RandomWalkPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    const Observation& now = observations[i];
-    actions[i] = draw_action(
-        now, [&](int action) { return now.legal(action); }, rng_);
+    std::vector<int> allowed;
+    for (int action = 0; action < now.action_count(); ++action) {
+      if (blocked_too_ ? now.affordable(action) : now.legal(action)) allowed.push_back(action);
+    }
+    actions[i] = allowed.empty() ? kStop : allowed[rng_.below(static_cast<std::uint32_t>(allowed.size()))];
   }
 }
 
@@ -180,18 +173,8 @@ Plan NearestPlanner::plan(const Task& task, const Clock& clock) {
   return plan_of_walk(task, std::move(walk));
 }
 
-Plan walked_on(const Task& task, const Plan& plan, const Clock& clock) {
-  NodeSet visited = task.ground();
-  for (const NodeId node : plan.walk) visited.insert(node);
-  const Plan more = NearestPlanner().plan(
-      task.rest(plan.walk.back(), std::max(0.0, task.budget() - plan.cost), std::move(visited)), clock);
-  if (more.walk.size() == 1) return plan;
-  std::vector<NodeId> walk = plan.walk;
-  walk.insert(walk.end(), more.walk.begin() + 1, more.walk.end());
-  return plan_of_walk(task, std::move(walk));
-}
-
 Plan plan_by_deadline(const Task& task, const Clock& clock, const std::function<Plan(const Clock& until)>& search) {
+  if (!clock.has_deadline()) return search(clock);
   const Stopwatch watch;
   Plan nearest = NearestPlanner().plan(task, clock);
   if (clock.passed()) return nearest;

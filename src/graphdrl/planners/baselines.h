@@ -1,4 +1,4 @@
-// The rules that learn nothing: two random policies, depth first and nearest unvisited.
+// The rules that learn nothing: random moves, depth first and nearest unvisited.
 #pragma once
 
 #include <functional>
@@ -10,25 +10,16 @@
 
 namespace graphdrl {
 
-// Draws uniformly from all actions: on grids the four directions, blocked or not, as the paper's author's baseline.
-// Where the walk must end at a node, from those that leave enough to get there.
+// Draws uniformly from the moves that leave enough to get where the walk must end.
 class RandomPolicy final : public Policy {
  public:
-  explicit RandomPolicy(std::uint64_t seed) : rng_(seed) {}
+  // blocked_too: from blocked moves too, on grids from all four directions, as the paper's author's baseline.
+  RandomPolicy(std::uint64_t seed, bool blocked_too) : rng_(seed), blocked_too_(blocked_too) {}
   void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
 
  private:
   Rng rng_;
-};
-
-// Draws uniformly from the open neighbours.
-class RandomWalkPolicy final : public Policy {
- public:
-  explicit RandomWalkPolicy(std::uint64_t seed) : rng_(seed) {}
-  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
-
- private:
-  Rng rng_;
+  bool blocked_too_;
 };
 
 // Descends to the first unvisited neighbour in the graph's order, and steps back where there is none; in a directed
@@ -54,12 +45,9 @@ class NearestPlanner final : public Planner {
   NearestFirst search_;
 };
 
-// A plan that was cut short, walked on by the nearest rule.
-Plan walked_on(const Task& task, const Plan& plan, const Clock& clock);
-
-// What a planner does with its time where there is a deadline: the nearest rule's walk first, which costs next to
-// nothing; then search(until), which gives its best plan by an earlier time, walked on by the nearest rule. Gives the
-// better of the two.
+// What a planner does with its time where there is a deadline, else search(clock) alone: the nearest rule's walk first,
+// which costs next to nothing; then search(until), which gives its best plan by an earlier time, walked on by the
+// nearest rule. Gives the better of the two.
 Plan plan_by_deadline(const Task& task, const Clock& clock, const std::function<Plan(const Clock& until)>& search);
 
 }  // namespace graphdrl

@@ -50,25 +50,226 @@ std::uint64_t spread(std::uint64_t node) {
 
 class Beam {
  public:
-  Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer);
+  Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer)
+      : task_(task),
+        view_(task.view()),
+        limit_(task.limit()),
+        unit_(view_.open().mean_cost()),
+        branching_(options.branching),
+        most_branches_(kTiesPerBranch * options.branching),
+        scorer_(scorer),
+        scored_per_level_(scorer == nullptr ? 0 : scored_per_level(options.width)),
+        visited_(0),
+        visited_sets_(task.ground(), view_.node_count()),
+        candidates_(static_cast<std::size_t>(options.width)) {
+    Partial root{.position = task.start(), .trail = -1, .spent = 0, .prize = 0, .penalties = 0, .hash = 0};
+    if (task_.has_prizes() && view_.total_prize() > 0) {
+      worth_ = limit_ / view_.total_prize();
+      mean_prize_ = view_.total_prize() / view_.valid_count();
+      for (const NodeId node : view_.valid_nodes()) most_prize_ = std::max(most_prize_, task_.prize(node));
+    }
+    const NodeSetView visited = visited_sets_[0];
+    for (const NodeId node : view_.valid_nodes()) {
+      if (visited.contains(node)) {
+        ++visited_;
+        continue;
+      }
+      root.penalties += leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
+    }
+    level_.assign(1, root);
+    best_ = root;
+  }
 
-  Plan run(const Clock& clock);
+  Plan run(const Clock& clock) {
+    Ticker ticker(clock, kExpansionsPerTick);
+    // All partial walks of a level have visited the same number of nodes. So without prizes the cheapest of the last
+    // level is the answer.
+    for (;;) {
+      note_best();
+      candidates_.clear();
+      if (!expand_level(ticker)) return best_plan(/*complete=*/false);
+      if (candidates_.empty()) return best_plan(/*complete=*/true);
+      keep_best();
+      ++visited_;
+    }
+  }
 
  private:
   // Makes the candidates of every partial walk of the level; false where the time is up.
-  bool expand_level(Ticker& ticker);
-  void expand_one_step(int parent);
-  void expand(int parent);
-  void consider(int parent, const NodeSetView& visited, NodeId node, double cost);
-  void expand_scored(int first, int end);
-  void add_candidate(int parent, NodeId node, double spent, double penalties, const Rankings& rankings);
-  Rankings by_penalties(double spent, double penalties) const;
-  Rankings by_score(double score, double spent, double penalties) const;
-  Rankings without_score(double spent, double penalties) const;
-  double most_useful_cost(const Partial& from) const;
-  void keep_best();
-  void note_best();
-  Plan best_plan(bool complete);
+  bool expand_level(Ticker& ticker) {
+    const int count = static_cast<int>(level_.size());
+    const int scored = std::min(scored_per_level_, count);
+    for (int first = 0; first < scored;) {
+      const int end = std::min(first + scorer_->most_states(), scored);
+      expand_scored(first, end);
+      first = end;
+      if (ticker.tick(visited_, kExpansionsPerTick)) return false;
+    }
+    // First the visits that cost 1: they tighten the bounds that end the searches below.
+    if (!view_.open().weighted()) {
+      for (int parent = scored; parent < count; ++parent) {
+        const int degree = view_.open().degree(level_[parent].position);
+        if (ticker.tick(visited_, 1 + degree / Ticker::kNodesPerUnit)) return false;
+        expand_one_step(parent);
+      }
+    }
+    for (int parent = scored; parent < count; ++parent) {
+      if (ticker.tick(visited_, 1 + met_ / Ticker::kNodesPerUnit)) return false;
+      met_ = 0;
+      expand(parent);
+    }
+    return true;
+  }
+
+  // Adds those of expand()'s candidates that cost 1. REQUIRES: every edge costs 1.
+  void expand_one_step(int parent) {
+    const Partial& from = level_[parent];
+    if (from.spent + 1 > limit_) return;
+    const NodeSetView visited = visited_sets_[parent];
+    candidates_.begin_parent(parent);
+    int branches = 0;
+    for (const NodeId node : view_.open_neighbours(from.position)) {
+      if (visited.contains(node) || from.spent + 1 + task_.cost_to_end(node) > limit_) continue;
+      if (++branches > most_branches_) return;
+      consider(parent, visited, node, 1);
+    }
+  }
+
+  void expand(int parent) {
+    const Partial& from = level_[parent];
+    const Exploration state = exploration(parent);
+    const double considered_cost = view_.open().weighted() ? -1 : 1;  // what costs as much was considered before
+    int branches = 0;
+    double last_cost = 0;
+    candidates_.begin_parent(parent);
+    double most_useful = most_useful_cost(from);
+    const auto visit = [&](NodeId node, double cost) {
+      if (branches >= most_branches_ || (branches >= branching_ && cost > last_cost)) {
+        dropped_ = true;
+        return false;
+      }
+      ++branches;
+      last_cost = cost;
+      if (cost == considered_cost) return true;
+      consider(parent, state.ground(), node, cost);
+      most_useful = most_useful_cost(from);
+      return true;
+    };
+    const auto meet = [&](double cost) {
+      ++met_;
+      dropped_ = dropped_ || cost > most_useful;
+      return cost <= most_useful;
+    };
+    state.for_first_visits(nearest_, visit, meet);
+  }
+
+  // Adds a first visit that is not scored to the candidates, unless it cannot be kept.
+  void consider(int parent, const NodeSetView& visited, NodeId node, double cost) {
+    const Partial& from = level_[parent];
+    const double spent = from.spent + cost;
+    const double to_rank = priced(from, node, spent);
+    // The node's own penalty goes, others can only rise: most candidates need no closer look.
+    const double own = leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
+    if (candidates_.is_useless(without_score(to_rank, from.penalties - own))) {
+      dropped_ = true;
+      return;
+    }
+    const double penalties = from.penalties + change_of_penalties(view_, visited, node);
+    add_candidate(parent, node, spent, penalties, without_score(to_rank, penalties));
+  }
+
+  void expand_scored(int first, int end) {
+    states_.clear();
+    for (int parent = first; parent < end; ++parent) states_.push_back(exploration(parent));
+    dropped_ = scorer_->score(states_, scored_) || dropped_;
+    for (const auto& [state, visit, score] : scored_) {
+      const Partial& from = level_[first + state];
+      const double spent = from.spent + visit.cost;
+      const double penalties = from.penalties + change_of_penalties(view_, states_[state].ground(), visit.node);
+      const double prize = task_.has_prizes() ? (from.prize + task_.prize(visit.node)) / mean_prize_ : 0;
+      add_candidate(first + state, visit.node, spent, penalties,
+                    by_score(score - prize, priced(from, visit.node, spent), penalties));
+    }
+  }
+
+  void add_candidate(int parent, NodeId node, double spent, double penalties, const Rankings& rankings) {
+    candidates_.add({.parent = parent,
+                     .node = node,
+                     .spent = spent,
+                     .penalties = penalties,
+                     .rankings = rankings,
+                     .visited_hash = level_[parent].hash ^ spread(node)});
+  }
+
+  // The rankings of a beam without a scorer: spent cost and each share of the penalties.
+  Rankings by_penalties(double spent, double penalties) const {
+    Rankings rankings{};
+    for (std::size_t i = 0; i < rankings.size(); ++i) rankings[i] = spent + kPenaltyShares[i] * unit_ * penalties;
+    return rankings;
+  }
+
+  // The rankings of a beam with one: its score takes the place of the last share.
+  Rankings by_score(double score, double spent, double penalties) const {
+    const Rankings plain = by_penalties(spent, penalties);
+    return {score, plain[0], plain[1]};
+  }
+
+  // The rankings of a first visit that no scorer saw.
+  Rankings without_score(double spent, double penalties) const {
+    return scorer_ == nullptr ? by_penalties(spent, penalties) : by_score(kUnscored + spent / unit_, spent, penalties);
+  }
+
+  // A first visit that costs more is behind `width` others by every ranking, however it changes the penalties.
+  double most_useful_cost(const Partial& from) const {
+    double most = 0;
+    const Rankings& worst = candidates_.worst_useful();
+    const double spent = from.spent - worth_ * (from.prize + most_prize_);
+    const Rankings least = by_penalties(spent, from.penalties - kIsolatedPenalty);
+    if (scorer_ == nullptr) {
+      for (std::size_t i = 0; i < worst.size(); ++i) most = std::max(most, worst[i] - least[i]);
+      return most;
+    }
+    most = (worst[0] - kUnscored) * unit_ - spent;
+    return std::max({most, worst[1] - least[0], worst[2] - least[1]});
+  }
+
+  void keep_best() {
+    dropped_ = candidates_.keep_best() || dropped_;
+    // To the front of the level, for the scorer: its own best, then others that look good without it.
+    candidates_.sort(0, 0);
+    if (scorer_ != nullptr) candidates_.sort(1, scored_per_level_ - scored_per_level_ / 3);
+    next_level_.clear();
+    for (const Candidate& candidate : candidates_.all()) {
+      trail_.push_back({candidate.node, level_[candidate.parent].trail});
+      const double prize = task_.has_prizes() ? level_[candidate.parent].prize + task_.prize(candidate.node) : 0;
+      next_level_.push_back({.position = candidate.node,
+                             .trail = std::ssize(trail_) - 1,
+                             .spent = candidate.spent,
+                             .prize = prize,
+                             .penalties = candidate.penalties,
+                             .hash = candidate.visited_hash});
+    }
+    visited_sets_.advance(candidates_.all());
+    level_.swap(next_level_);
+  }
+
+  // Remembers the best partial walk of the level, unless an older one is worth more.
+  void note_best() {
+    const auto cost = [&](const Partial& partial) { return partial.spent + task_.cost_to_end(partial.position); };
+    const auto is_better = [&](const Partial& a, const Partial& b) {
+      return a.prize != b.prize ? a.prize > b.prize : cost(a) < cost(b);
+    };
+    const Partial& level_best = *std::min_element(level_.begin(), level_.end(), is_better);
+    if (!task_.has_prizes() || is_better(level_best, best_)) best_ = level_best;
+  }
+
+  Plan best_plan(bool complete) {
+    std::vector<NodeId> order;
+    for (std::int64_t i = best_.trail; i >= 0; i = trail_[i].before) order.push_back(trail_[i].node);
+    std::reverse(order.begin(), order.end());
+    return plan_of_walk(task_, walk_through(task_, order, nearest_),
+                        complete && !dropped_ && view_.open().straight_ways_suffice());
+  }
 
   Exploration exploration(int parent) const {
     return {task_, visited_sets_[parent], visited_, level_[parent].position, limit_ - level_[parent].spent};
@@ -86,7 +287,6 @@ class Beam {
   double worth_ = 0;  // of a unit of prize, in units of cost
   double mean_prize_ = 1;
   double most_prize_ = 0;  // of one node
-  int width_;
   int branching_;
   int most_branches_;         // among equally near ones
   FirstVisitScorer* scorer_;  // null where partial walks are ranked by penalties
@@ -102,235 +302,9 @@ class Beam {
   BestStates candidates_;
   std::vector<Link> trail_;
   std::vector<Partial> next_level_;
-  std::vector<VisitedSets::Child> children_;
   std::vector<Exploration> states_;
   std::vector<ScoredVisit> scored_;
 };
-
-Beam::Beam(const Task& task, const BeamOptions& options, FirstVisitScorer* scorer)
-    : task_(task),
-      view_(task.view()),
-      limit_(task.limit()),
-      unit_(view_.open().mean_cost()),
-      width_(options.width),
-      branching_(options.branching),
-      most_branches_(kTiesPerBranch * options.branching),
-      scorer_(scorer),
-      scored_per_level_(scorer == nullptr ? 0 : scored_per_level(width_)),
-      visited_(0),
-      visited_sets_(task.ground(), view_.node_count()),
-      candidates_(static_cast<std::size_t>(width_)) {
-  Partial root{.position = task.start(), .trail = -1, .spent = 0, .prize = 0, .penalties = 0, .hash = 0};
-  if (task_.has_prizes() && view_.total_prize() > 0) {
-    worth_ = limit_ / view_.total_prize();
-    mean_prize_ = view_.total_prize() / view_.valid_count();
-    for (const NodeId node : view_.valid_nodes()) most_prize_ = std::max(most_prize_, task_.prize(node));
-  }
-  const NodeSetView visited = visited_sets_[0];
-  for (const NodeId node : view_.valid_nodes()) {
-    if (visited.contains(node)) {
-      ++visited_;
-      continue;
-    }
-    int neighbours = 0;
-    for (const NodeId next : view_.open_neighbours(node)) neighbours += !visited.contains(next);
-    root.penalties += leftover_penalty(neighbours);
-  }
-  level_.assign(1, root);
-  best_ = root;
-}
-
-Plan Beam::run(const Clock& clock) {
-  Ticker ticker(clock, kExpansionsPerTick);
-  // All partial walks of a level have visited the same number of nodes. So without prizes the cheapest of the last
-  // level is the answer.
-  for (;;) {
-    note_best();
-    candidates_.clear();
-    if (!expand_level(ticker)) return best_plan(/*complete=*/false);
-    if (candidates_.empty()) return best_plan(/*complete=*/true);
-    keep_best();
-    ++visited_;
-  }
-}
-
-// Remembers the best partial walk of the level, unless an older one is worth more.
-void Beam::note_best() {
-  const auto cost = [&](const Partial& partial) { return partial.spent + task_.cost_to_end(partial.position); };
-  const auto level_best = std::min_element(level_.begin(), level_.end(), [&](const Partial& a, const Partial& b) {
-    return a.prize != b.prize ? a.prize > b.prize : cost(a) < cost(b);
-  });
-  const bool better =
-      level_best->prize != best_.prize ? level_best->prize > best_.prize : cost(*level_best) < cost(best_);
-  if (!task_.has_prizes() || better) best_ = *level_best;
-}
-
-Plan Beam::best_plan(bool complete) {
-  std::vector<NodeId> order;
-  for (std::int64_t trail = best_.trail; trail >= 0; trail = trail_[trail].before) order.push_back(trail_[trail].node);
-  std::reverse(order.begin(), order.end());
-  return plan_of_walk(task_, walk_through(task_, order, nearest_),
-                      complete && !dropped_ && view_.open().straight_ways_suffice());
-}
-
-bool Beam::expand_level(Ticker& ticker) {
-  const int count = static_cast<int>(level_.size());
-  const int scored = std::min(scored_per_level_, count);
-  for (int first = 0; first < scored;) {
-    const int end = std::min(first + scorer_->most_states(), scored);
-    expand_scored(first, end);
-    first = end;
-    if (ticker.tick(visited_, kExpansionsPerTick)) return false;
-  }
-  // First the visits that cost 1: they tighten the bounds that end the searches below.
-  if (!view_.open().weighted()) {
-    for (int parent = scored; parent < count; ++parent) {
-      const int degree = view_.open().degree(level_[parent].position);
-      if (ticker.tick(visited_, 1 + degree / Ticker::kNodesPerUnit)) return false;
-      expand_one_step(parent);
-    }
-  }
-  for (int parent = scored; parent < count; ++parent) {
-    if (ticker.tick(visited_, 1 + met_ / Ticker::kNodesPerUnit)) return false;
-    met_ = 0;
-    expand(parent);
-  }
-  return true;
-}
-
-// The rankings of a beam without a scorer: spent cost and each share of the penalties.
-Rankings Beam::by_penalties(double spent, double penalties) const {
-  Rankings rankings{};
-  for (std::size_t i = 0; i < rankings.size(); ++i) rankings[i] = spent + kPenaltyShares[i] * unit_ * penalties;
-  return rankings;
-}
-
-// The rankings of a beam with one: its score takes the place of the last share.
-Rankings Beam::by_score(double score, double spent, double penalties) const {
-  const Rankings plain = by_penalties(spent, penalties);
-  return {score, plain[0], plain[1]};
-}
-
-// The rankings of a first visit that no scorer saw.
-Rankings Beam::without_score(double spent, double penalties) const {
-  return scorer_ == nullptr ? by_penalties(spent, penalties) : by_score(kUnscored + spent / unit_, spent, penalties);
-}
-
-// A first visit that costs more is behind `width` others by every ranking, however it changes the penalties.
-double Beam::most_useful_cost(const Partial& from) const {
-  double most = 0;
-  const Rankings& worst = candidates_.worst_useful();
-  const double spent = from.spent - worth_ * (from.prize + most_prize_);
-  const Rankings least = by_penalties(spent, from.penalties - kIsolatedPenalty);
-  if (scorer_ == nullptr) {
-    for (std::size_t i = 0; i < worst.size(); ++i) most = std::max(most, worst[i] - least[i]);
-    return most;
-  }
-  most = (worst[0] - kUnscored) * unit_ - spent;
-  return std::max({most, worst[1] - least[0], worst[2] - least[1]});
-}
-
-// Adds a first visit that is not scored to the candidates, unless it cannot be kept.
-void Beam::consider(int parent, const NodeSetView& visited, NodeId node, double cost) {
-  const Partial& from = level_[parent];
-  const double spent = from.spent + cost;
-  const double to_rank = priced(from, node, spent);
-  // The node's own penalty goes, others can only rise: most candidates need no closer look.
-  const double own = leftover_penalty(unvisited_neighbours_up_to_three(view_, visited, node));
-  if (candidates_.is_useless(without_score(to_rank, from.penalties - own))) {
-    dropped_ = true;
-    return;
-  }
-  const double penalties = from.penalties + change_of_penalties(view_, visited, node);
-  add_candidate(parent, node, spent, penalties, without_score(to_rank, penalties));
-}
-
-void Beam::add_candidate(int parent, NodeId node, double spent, double penalties, const Rankings& rankings) {
-  candidates_.add({.parent = parent,
-                   .node = node,
-                   .spent = spent,
-                   .penalties = penalties,
-                   .rankings = rankings,
-                   .visited_hash = level_[parent].hash ^ spread(node)});
-}
-
-// Adds those of expand()'s candidates that cost 1. REQUIRES: every edge costs 1.
-void Beam::expand_one_step(int parent) {
-  const Partial& from = level_[parent];
-  if (from.spent + 1 > limit_) return;
-  const NodeSetView visited = visited_sets_[parent];
-  candidates_.begin_parent(parent);
-  int branches = 0;
-  for (const NodeId node : view_.open_neighbours(from.position)) {
-    if (visited.contains(node) || from.spent + 1 + task_.cost_to_end(node) > limit_) continue;
-    if (++branches > most_branches_) return;
-    consider(parent, visited, node, 1);
-  }
-}
-
-void Beam::expand(int parent) {
-  const Partial& from = level_[parent];
-  const Exploration state = exploration(parent);
-  const double considered_cost = view_.open().weighted() ? -1 : 1;  // what costs as much was considered before
-  int branches = 0;
-  double last_cost = 0;
-  candidates_.begin_parent(parent);
-  double most_useful = most_useful_cost(from);
-  const auto visit = [&](NodeId node, double cost) {
-    if (branches >= most_branches_ || (branches >= branching_ && cost > last_cost)) {
-      dropped_ = true;
-      return false;
-    }
-    ++branches;
-    last_cost = cost;
-    if (cost == considered_cost) return true;
-    consider(parent, state.ground(), node, cost);
-    most_useful = most_useful_cost(from);
-    return true;
-  };
-  const auto meet = [&](double cost) {
-    ++met_;
-    dropped_ = dropped_ || cost > most_useful;
-    return cost <= most_useful;
-  };
-  state.for_first_visits(nearest_, visit, meet);
-}
-
-void Beam::expand_scored(int first, int end) {
-  states_.clear();
-  for (int parent = first; parent < end; ++parent) states_.push_back(exploration(parent));
-  dropped_ = scorer_->score(states_, scored_) || dropped_;
-  for (const auto& [state, visit, score] : scored_) {
-    const Partial& from = level_[first + state];
-    const double spent = from.spent + visit.cost;
-    const double penalties = from.penalties + change_of_penalties(view_, states_[state].ground(), visit.node);
-    const double prize = task_.has_prizes() ? (from.prize + task_.prize(visit.node)) / mean_prize_ : 0;
-    add_candidate(first + state, visit.node, spent, penalties,
-                  by_score(score - prize, priced(from, visit.node, spent), penalties));
-  }
-}
-
-void Beam::keep_best() {
-  dropped_ = candidates_.keep_best() || dropped_;
-  // To the front of the level, for the scorer: its own best, then others that look good without it.
-  candidates_.sort(0, 0);
-  if (scorer_ != nullptr) candidates_.sort(1, scored_per_level_ - scored_per_level_ / 3);
-  next_level_.clear();
-  children_.clear();
-  for (const Candidate& candidate : candidates_.all()) {
-    trail_.push_back({candidate.node, level_[candidate.parent].trail});
-    children_.push_back({candidate.parent, candidate.node});
-    const double prize = task_.has_prizes() ? level_[candidate.parent].prize + task_.prize(candidate.node) : 0;
-    next_level_.push_back({.position = candidate.node,
-                           .trail = std::ssize(trail_) - 1,
-                           .spent = candidate.spent,
-                           .prize = prize,
-                           .penalties = candidate.penalties,
-                           .hash = candidate.visited_hash});
-  }
-  visited_sets_.advance(children_);
-  level_.swap(next_level_);
-}
 
 // The most memory that a beam may need: every level's chain of first visits, two levels of partial walks with their
 // rows of bits, and the candidates of each; of a beam with a scorer, as if all were scored.
@@ -369,6 +343,7 @@ Plan BeamPlanner::search_until(const Task& task, const Clock& clock) {
     return options.width <= kMaxBeamWidth && bytes_needed(task.view(), options, scorer_.get()) <= kMaxBeamBytes;
   };
   Plan best = search_once(task, options_, clock);
+  if (!clock.has_deadline()) return best;
   if (other_ != nullptr && !best.optimal) best = better_of(std::move(best), other_->plan(task, clock));
   // Width and branching each grow while memory allows.
   for (BeamOptions wider = options_; !best.optimal && !clock.passed();) {
@@ -377,16 +352,14 @@ Plan BeamPlanner::search_until(const Task& task, const Clock& clock) {
     if (!fits(wider)) wider.branching = before.branching;
     wider.width *= 2;
     if (!fits(wider)) wider.width = before.width;
-    const bool grows = wider.width > before.width ||
-                       (wider.branching > before.branching && before.branching < task.view().valid_count());
-    if (!grows) break;
+    const bool branches_more = wider.branching > before.branching && before.branching < task.view().valid_count();
+    if (wider.width == before.width && !branches_more) break;
     best = better_of(std::move(best), search_once(task, wider, clock));
   }
   return best;
 }
 
 Plan BeamPlanner::plan(const Task& task, const Clock& clock) {
-  if (!clock.has_deadline()) return search_once(task, options_, clock);
   return plan_by_deadline(task, clock, [&](const Clock& until) { return search_until(task, until); });
 }
 

@@ -3,11 +3,35 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "graphdrl/planners/plan.h"
-#include "graphdrl/planners/scorer.h"
 
 namespace graphdrl {
+
+// A first visit of one of the states scored together.
+struct ScoredVisit {
+  int state;  // its place among them
+  FirstVisit visit;
+  double score;  // of what will be left unvisited in the end, in nodes; lower is better, and comparable across states
+};
+
+// What scores the states of a beam: the explorer's network on the CPU, later others elsewhere.
+class FirstVisitScorer {
+ public:
+  virtual ~FirstVisitScorer() = default;
+
+  // Scores the first visits of each state, of all or of the nearest; those of a state stand together, nearest first.
+  // `visits` is overwritten. Gives whether first visits of any state were left out.
+  // REQUIRES: at least one state; all are of one task.
+  virtual bool score(std::span<const Exploration> states, std::vector<ScoredVisit>& visits) = 0;
+
+  // How many states to score together at most, so that a deadline is not missed by much.
+  virtual int most_states() const = 0;
+  // How many first visits of a state are scored at most, those equally near aside.
+  virtual int most_visits() const = 0;
+};
 
 struct BeamOptions {
   int width = 50;  // partial walks kept per level

@@ -16,13 +16,6 @@ std::uint64_t state_hash(const Candidate& candidate) {
   return hash ^ (hash >> 29);
 }
 
-// Where each ranking's third of so many ends.
-std::array<std::size_t, kRankings> shares_of(std::size_t kept) {
-  std::array<std::size_t, kRankings> shares{};
-  for (std::size_t i = 0; i < kRankings; ++i) shares[i] = (kept * (i + 1) + kRankings - 1) / kRankings;
-  return shares;
-}
-
 auto by(std::size_t ranking) {
   return [ranking](const Candidate& a, const Candidate& b) {
     if (a.rankings[ranking] != b.rankings[ranking]) return a.rankings[ranking] < b.rankings[ranking];
@@ -32,7 +25,8 @@ auto by(std::size_t ranking) {
 
 }  // namespace
 
-BestStates::BestStates(std::size_t width) : width_(width), slots_(kLeastSlots), shares_(shares_of(width)) {
+BestStates::BestStates(std::size_t width) : width_(width), slots_(kLeastSlots) {
+  for (std::size_t i = 0; i < kRankings; ++i) shares_[i] = (width * (i + 1) + kRankings - 1) / kRankings;
   clear();
 }
 

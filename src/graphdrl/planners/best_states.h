@@ -15,12 +15,12 @@ using Rankings = std::array<double, kRankings>;  // lower is better
 
 // A partial walk with one more first visit, not built yet.
 struct Candidate {
-  int parent;
-  NodeId node;
-  double spent;
-  double penalties;
-  Rankings rankings;
-  std::uint64_t visited_hash;  // of the visited set
+  int parent = 0;
+  NodeId node = kNoNode;
+  double spent = 0;
+  double penalties = 0;
+  Rankings rankings = {};
+  std::uint64_t visited_hash = 0;  // of the visited set
 };
 // With room to grow, and up to four slots of the table of states.
 inline constexpr double kCandidateBytes = 2 * sizeof(Candidate) + 96;
@@ -80,7 +80,7 @@ class BestStates {
   std::vector<Slot> slots_;  // a power of two; open addressing
   std::uint32_t generation_ = 0;
   // How many are kept by each ranking and those before it, and heaps of as many of the best by it, the worst on top.
-  std::array<std::size_t, kRankings> shares_;
+  std::array<std::size_t, kRankings> shares_{};
   std::array<std::vector<Standing>, kRankings> best_;
   int parent_ = 0;
   Rankings worst_useful_{};

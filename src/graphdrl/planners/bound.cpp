@@ -3,59 +3,49 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <memory>
+#include <numeric>
 #include <optional>
 #include <queue>
+#include <utility>
 
-#include "graphdrl/graph/blocks.h"
+#include "graphdrl/graph/components.h"
 #include "graphdrl/graph/search.h"
 
 namespace graphdrl {
-
 namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // The tree of blocks, with what it costs to arrive in them.
 struct ArrivalTree {
-  ArrivalTree(const Task& task);
+  ArrivalTree(const Task& task) : blocks(task.view().both_ways(), task.start(), task.reach().contains) {
+    const Graph& into = task.view().into();
+    std::vector<int> block_of(task.view().node_count(), -1);
+    std::vector<bool> end_below(task.view().node_count());
+    if (!task.ends_anywhere()) end_below[task.end()] = true;
+    for (int block = 0; block < blocks.count(); ++block) {
+      const NodeId root = blocks.root(block);
+      const auto members = blocks.members(block);
+      block_of[root] = block;
+      for (const NodeId member : members) block_of[member] = block;
+      const auto cheapest = [&](NodeId node) {
+        double least = kNoLimit;
+        const auto from = into.neighbours(node);
+        for (int i = 0; i < std::ssize(from); ++i) {
+          if (block_of[from[i]] == block) least = std::min(least, into.cost(node, i));
+        }
+        return least;
+      };
+      for (const NodeId member : members) arrival.push_back(cheapest(member));
+      back.push_back(cheapest(root));
+      holds_end.push_back(std::any_of(members.begin(), members.end(), [&](NodeId node) { return end_below[node]; }));
+      if (holds_end.back()) end_below[root] = true;
+    }
+  }
 
   Blocks blocks;
   std::vector<double> arrival;  // by place among the blocks' members: the cheapest edge of its block into a member
-  std::vector<double> back;     // [blocks], likewise into the root; kNever where there is none
+  std::vector<double> back;     // [blocks], likewise into the root; kNoLimit where there is none
   std::vector<bool> holds_end;  // [blocks], where the walk must end: in it, or in what hangs from it
 };
-
-ArrivalTree::ArrivalTree(const Task& task)
-    : blocks(task.view().open(), task.view().into(), task.start(), task.reach().contains) {
-  const Graph& into = task.view().into();
-  std::vector<int> block_of(task.view().node_count(), -1);
-  std::vector<bool> end_below(task.view().node_count());
-  if (!task.ends_anywhere()) end_below[task.end()] = true;
-  for (int block = 0; block < blocks.count(); ++block) {
-    const NodeId root = blocks.root(block);
-    const auto members = blocks.members(block);
-    block_of[root] = block;
-    for (const NodeId member : members) block_of[member] = block;
-    const auto cheapest = [&](NodeId node) {
-      double least = kNever;
-      const auto from = into.neighbours(node);
-      for (int i = 0; i < std::ssize(from); ++i) {
-        if (block_of[from[i]] == block) least = std::min(least, into.cost(node, i));
-      }
-      return least;
-    };
-    bool end_here = false;
-    for (const NodeId member : members) {
-      arrival.push_back(cheapest(member));
-      end_here = end_here || end_below[member];
-    }
-    back.push_back(cheapest(root));
-    holds_end.push_back(end_here);
-    if (end_here && root != task.end()) end_below[root] = true;
-  }
-}
 
 // Something to pay for, by cost per prize; a heap has the cheapest on top.
 struct Item {
@@ -86,7 +76,7 @@ double fractional_bound(const Task& task, const ArrivalTree& tree) {
       saved = std::max(saved, deepest[members[i]]);
     }
     const NodeId root = tree.blocks.root(block);
-    const double back = tree.back[block] == kNever ? 0 : tree.back[block];
+    const double back = tree.back[block] == kNoLimit ? 0 : tree.back[block];
     if (!tree.holds_end[block] && !items.empty()) {
       // Whatever is had here pays the way back: spread over the items for which that is cheapest.
       Item whole{back, 0};
@@ -111,7 +101,7 @@ double fractional_bound(const Task& task, const ArrivalTree& tree) {
   return prize;
 }
 
-// Least costs by number of nodes visited, from 0 up; kNever where so many cannot be had.
+// Least costs by number of nodes visited, from 0 up; kNoLimit where so many cannot be had.
 using Costs = std::vector<double>;
 
 // A branch of the tree of blocks, seen from the node it hangs from, which is not counted.
@@ -124,7 +114,7 @@ struct Branch {
 class Knapsack {
  public:
   Knapsack(const Task& task, const ArrivalTree& tree, const Clock& clock)
-      : task_(task), tree_(tree), limit_(task.limit()), clock_(clock), hanging_(task.view().node_count()) {}
+      : task_(task), tree_(tree), clock_(clock), hanging_(task.view().node_count()) {}
 
   // Nodes besides the start that can be had within the limit; empty where that takes too long to find out.
   std::optional<int> most_visited() {
@@ -132,9 +122,9 @@ class Knapsack {
       close_block(block);
       if (sums_ > kKnapsackSums || clock_.passed()) return std::nullopt;
     }
-    const Branch all = hanging_[task_.start()] ? *hanging_[task_.start()] : Branch();
-    const bool closed = !task_.ends_anywhere() && task_.end() == task_.start();
-    return static_cast<int>((closed ? all.closed : all.open).size()) - 1;
+    const auto& all = hanging_[task_.start()];
+    if (!all) return 0;
+    return static_cast<int>((task_.end() == task_.start() ? all->closed : all->open).size()) - 1;
   }
 
  private:
@@ -142,12 +132,12 @@ class Knapsack {
   Costs convolution(const Costs& one, const Costs& other) {
     sums_ += static_cast<double>(one.size()) * static_cast<double>(other.size());
     if (sums_ > kKnapsackSums) return {0};  // too long: given up
-    Costs sum(one.size() + other.size() - 1, kNever);
+    Costs sum(one.size() + other.size() - 1, kNoLimit);
     for (std::size_t i = 0; i < one.size(); ++i) {
-      if (one[i] > limit_) continue;
+      if (one[i] > task_.limit()) continue;
       for (std::size_t j = 0; j < other.size(); ++j) sum[i + j] = std::min(sum[i + j], one[i] + other[j]);
     }
-    while (sum.back() > limit_) sum.pop_back();  // k = 0 costs nothing
+    while (sum.back() > task_.limit()) sum.pop_back();  // k = 0 costs nothing
     return sum;
   }
 
@@ -155,7 +145,7 @@ class Knapsack {
   void add_beside(Branch& branch, const Branch& other) {
     Costs open = convolution(branch.open, other.closed);
     const Costs ends_in_other = convolution(branch.closed, other.open);
-    if (open.size() < ends_in_other.size()) open.resize(ends_in_other.size(), kNever);
+    if (open.size() < ends_in_other.size()) open.resize(ends_in_other.size(), kNoLimit);
     for (std::size_t i = 0; i < ends_in_other.size(); ++i) open[i] = std::min(open[i], ends_in_other[i]);
     branch.open = std::move(open);
     branch.closed = convolution(branch.closed, other.closed);
@@ -168,49 +158,46 @@ class Knapsack {
     return result;
   }
 
-  void close_block(int block);
+  // Adds a block, and what hangs from its members, to what hangs from its root.
+  void close_block(int block) {
+    // Members from which nothing hangs: the cheapest first. Sums of sorted costs are convex, so they go in at once.
+    std::vector<double> plain;
+    Branch whole;
+    const auto members = tree_.blocks.members(block);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      const double arrival = tree_.arrival[tree_.blocks.first_member(block) + i];
+      if (const std::optional<Branch> branch = std::exchange(hanging_[members[i]], std::nullopt)) {
+        add_beside(whole, {behind(branch->closed, arrival), behind(branch->open, arrival)});
+      } else {
+        plain.push_back(arrival);
+      }
+    }
+    std::sort(plain.begin(), plain.end());
+    Costs sums = {0};
+    for (const double cost : plain) {
+      if (sums.back() + cost > task_.limit()) break;
+      sums.push_back(sums.back() + cost);
+    }
+    add_beside(whole, {sums, sums});
+    for (std::size_t k = 1; k < whole.closed.size(); ++k) whole.closed[k] += tree_.back[block];
+    // A walk that must end elsewhere comes back.
+    if (!task_.ends_anywhere() && !tree_.holds_end[block]) whole.open = whole.closed;
+    auto& beside = hanging_[tree_.blocks.root(block)];
+    if (beside) {
+      add_beside(*beside, whole);
+    } else if (whole.open.size() > 1) {
+      beside = std::move(whole);
+    }
+  }
 
   const Task& task_;
   const ArrivalTree& tree_;
-  double limit_;
   Clock clock_;
   double sums_ = 0;
-  std::vector<std::unique_ptr<Branch>> hanging_;  // [N], what hangs from a node, away from the start; null for nothing
+  std::vector<std::optional<Branch>> hanging_;  // [N], what hangs from a node, away from the start
 };
 
-// Adds a block, and what hangs from its members, to what hangs from its root.
-void Knapsack::close_block(int block) {
-  // Members from which nothing hangs: the cheapest first. Sums of sorted costs are convex, so they go in at once.
-  std::vector<double> plain;
-  Branch whole;
-  const auto members = tree_.blocks.members(block);
-  for (std::size_t i = 0; i < members.size(); ++i) {
-    const double arrival = tree_.arrival[tree_.blocks.first_member(block) + i];
-    if (const std::unique_ptr<Branch> branch = std::move(hanging_[members[i]])) {
-      add_beside(whole, {behind(branch->closed, arrival), behind(branch->open, arrival)});
-    } else {
-      plain.push_back(arrival);
-    }
-  }
-  std::sort(plain.begin(), plain.end());
-  Costs sums = {0};
-  for (const double cost : plain) {
-    if (sums.back() + cost > limit_) break;
-    sums.push_back(sums.back() + cost);
-  }
-  add_beside(whole, {sums, sums});
-  for (std::size_t k = 1; k < whole.closed.size(); ++k) whole.closed[k] += tree_.back[block];
-  // A walk that must end elsewhere comes back.
-  if (!task_.ends_anywhere() && !tree_.holds_end[block]) whole.open = whole.closed;
-  std::unique_ptr<Branch>& beside = hanging_[tree_.blocks.root(block)];
-  if (beside) {
-    add_beside(*beside, whole);
-  } else if (whole.open.size() > 1) {
-    beside = std::make_unique<Branch>(std::move(whole));
-  }
-}
-
-// What a walk of so many steps can be worth at most in a bipartite graph; kNever where it is not bipartite.
+// What a walk of so many steps can be worth at most in a bipartite graph; kNoLimit where it is not bipartite.
 double colour_bound(const Task& task, double steps) {
   std::vector<std::int8_t> colour(task.view().node_count(), -1);
   const Graph& graph = task.view().both_ways();
@@ -222,7 +209,7 @@ double colour_bound(const Task& task, double steps) {
     prizes[colour[node]].push_back(task.prize(node));
     for (const NodeId next : graph.neighbours(node)) {
       if (!task.reach().contains[next]) continue;
-      if (colour[next] == colour[node]) return kNever;
+      if (colour[next] == colour[node]) return kNoLimit;
       if (colour[next] >= 0) continue;
       colour[next] = static_cast<std::int8_t>(1 - colour[node]);
       queue.push_back(next);
@@ -234,9 +221,7 @@ double colour_bound(const Task& task, double steps) {
       std::nth_element(of.begin(), of.begin() + count, of.end(), std::greater<>());
       of.resize(static_cast<std::size_t>(count));
     }
-    double sum = 0;
-    for (const double prize : of) sum += prize;
-    return sum;
+    return std::accumulate(of.begin(), of.end(), 0.0);
   };
   return best(prizes[0], (positions + 1) / 2) + best(prizes[1], positions / 2);
 }
@@ -244,7 +229,7 @@ double colour_bound(const Task& task, double steps) {
 // The best way through the strongly connected components of a directed graph.
 double order_bound(const Task& task) {
   const Graph& open = task.view().open();
-  const std::vector<int> component = strong_components(open, task.view().into(), task.start(), task.reach().contains);
+  const std::vector<int> component = strong_components(open, task.start(), task.reach().contains);
   const int count = 1 + *std::max_element(component.begin(), component.end());
   std::vector<std::vector<NodeId>> members(count);
   for (const NodeId node : task.reach().nodes) {
@@ -272,7 +257,7 @@ double max_prize(const Task& task, const Clock& clock) {
   const Graph& open = task.view().open();
   double most = 0;
   for (const NodeId node : task.reach().nodes) most += task.prize(node);
-  const double steps = open.min_cost() > 0 ? std::floor(task.limit() / open.min_cost() * (1 + 1e-12)) : kNever;
+  const double steps = open.min_cost() > 0 ? std::floor(task.limit() / open.min_cost() * (1 + 1e-12)) : kNoLimit;
   most = std::min(most, colour_bound(task, steps));
   if (open.directed()) most = std::min(most, order_bound(task));
   if (clock.passed()) return most;

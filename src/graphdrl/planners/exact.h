@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
@@ -24,6 +25,9 @@ namespace graphdrl {
 inline constexpr int kExactMaxNodes = 64;                  // valid nodes that the budget reaches: a set is one word
 inline constexpr std::size_t kExactMaxStates = 2'000'000;  // then a search gives up
 inline constexpr double kExactMaxWork = 5e7;               // of branch and cut: some seconds [LpBound::Effort]
+
+// Nodes within a task's limit; of more than kExactMaxNodes one more than these.
+std::size_t nodes_in_reach(const Task& task);
 
 class SearchOutOfReach : public Error {
  public:
@@ -42,7 +46,8 @@ std::optional<std::vector<NodeId>> exact_walk(const Task& task, const Clock& clo
 // deadline the three share the time, and the best walk is given once it passes.
 class ExactPlanner final : public Planner {
  public:
-  explicit ExactPlanner(std::unique_ptr<Planner> incumbent = nullptr) : incumbent_(std::move(incumbent)) {}
+  explicit ExactPlanner(std::unique_ptr<Planner> incumbent = std::make_unique<NearestPlanner>())
+      : incumbent_(std::move(incumbent)) {}
 
   Plan plan(const Task& task, const Clock& clock = {}) override;
 

@@ -73,7 +73,6 @@ std::size_t ExplorerScorer::choose(const Task& task, const ExplorerBatch& batch,
 }
 
 Plan ExplorerPlanner::plan(const Task& task, const Clock& clock) {
-  if (!clock.has_deadline()) return walk_until(task, clock);
   return plan_by_deadline(task, clock, [&](const Clock& until) { return walk_until(task, until); });
 }
 

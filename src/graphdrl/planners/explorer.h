@@ -2,13 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <string_view>
 #include <vector>
 
 #include "graphdrl/nn/explorer_network.h"
-#include "graphdrl/planners/plan.h"
-#include "graphdrl/planners/scorer.h"
+#include "graphdrl/planners/beam.h"
 
 namespace graphdrl {
 

@@ -1,9 +1,9 @@
 // Linear programs, solved by CLP (github.com/coin-or/Clp).
 #pragma once
 
+#include <ClpSimplex.hpp>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -16,15 +16,16 @@ namespace graphdrl {
 // One thread at a time. The same calls give the same answers, but for deadlines.
 class LinearProgram {
  public:
-  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();  // of rows only
+  static constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
   struct Row {
-    double lower = -kUnbounded;
-    double upper = kUnbounded;
+    double lower = -COIN_DBL_MAX;
+    double upper = COIN_DBL_MAX;
     std::vector<int> columns = {};
     std::vector<double> values = {};
 
-    void add(int column, double value) {
+    void add(int column, double value) {  // nothing for column -1
+      if (column < 0) return;
       columns.push_back(column);
       values.push_back(value);
     }
@@ -37,16 +38,14 @@ class LinearProgram {
   };
 
   LinearProgram();
-  ~LinearProgram();
-  LinearProgram(const LinearProgram&) = delete;
-  LinearProgram& operator=(const LinearProgram&) = delete;
+  LinearProgram(const LinearProgram&) = delete;  // a program is large
 
   // Its number. REQUIRES: finite bounds, no rows yet.
   int add_column(double objective, double lower, double upper);
   void add_rows(std::span<const Row> rows);
   // Takes out the rows from `first` on that do not bind in the last solution.
   void remove_slack_rows(int first);
-  void set_bounds(int column, double lower, double upper);
+  void set_bounds(int column, double lower, double upper) { model_.setColumnBounds(column, lower, upper); }
 
   // Dual simplex, until the clock passes or so much work more [work()], about.
   Outcome solve(const Clock& clock, double work = kUnbounded);
@@ -55,10 +54,10 @@ class LinearProgram {
   // Leaves everything as the last solve did. REQUIRES: that solve was optimal.
   double probe(int column, double lower, double upper, int iterations);
 
-  int columns() const;
-  int rows() const;
-  double lower(int column) const;
-  double upper(int column) const;
+  int columns() const { return model_.numberColumns(); }
+  int rows() const { return model_.numberRows(); }
+  double lower(int column) const { return model_.columnLower()[column]; }
+  double upper(int column) const { return model_.columnUpper()[column]; }
   // Up to now: iterations, each times the rows and columns there were. A million takes about 30 ms.
   std::int64_t work() const { return work_; }
 
@@ -72,16 +71,13 @@ class LinearProgram {
   std::span<const double> reduced_costs() const { return reduced_costs_; }
 
  private:
-  struct Solver;
-
   void run_dual(int most_iterations);
   bool proves_infeasible();
   // Computes the bound that weights of the rows prove, and the reduced costs. with_objective: else of 0.
   double bound_by(const double* duals, bool with_objective);
 
-  std::unique_ptr<Solver> solver_;
+  ClpSimplex model_;
   std::vector<double> values_;
-  std::vector<double> duals_;
   std::vector<double> reduced_costs_;
   double bound_ = kUnbounded;
   std::int64_t work_ = 0;

@@ -9,25 +9,46 @@
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/bound.h"
-#include "graphdrl/planners/lp_bound.h"
 
 namespace graphdrl {
 namespace {
 
-// What a walk makes for: its targets in the order of first visits, and the costs of the ways to each, and to the end.
-struct Tour {
-  std::vector<int> order;
-  std::vector<double> links;
-  double prize;
-};
+// All numbers are those by which most is visited on worlds of the validation split (docs/search.md).
 
+// Where the choice of targets matters [Annealing::is_selective()], a chain keeps a population of routes.
+constexpr int kPopulation = 8;
+constexpr double kFirstShare = 0.4;  // of the schedule, for the first routes
+constexpr int kChildren = 64;        // each of two routes
+constexpr double kLastShare = 0.1;   // of the schedule, for the last run, from the best route
+constexpr double kWarm = 0.6;        // of the way from the first temperature to the last, where children begin
+
+// With a deadline: shares of the time left.
+constexpr double kTargetsShare = 0.5;  // for the costs between targets, at most
+constexpr double kBoundShare = 0.05;   // for the knapsack bound, and again for the root of the linear program
+constexpr double kStartShare = 0.05;   // for each walk to start with but nearest
+// Without a deadline: LpBound::Effort::work.
+constexpr double kRootWork = 1e7;    // at most about 0.3 s
+constexpr double kBranchWork = 2e6;  // once the search is over
+
+constexpr double kExplorerVisitS = 0.4e-3;  // a first visit: the explorer is not begun where it would not end
+constexpr double kStepS = 5e-6;             // a step, about
+constexpr double kBranchFrom = 4;  // branch only if the time left is over this many searches; it then gets one's time
+constexpr double kWalkTimes = 2;   // time kept for the last walk, in times that the walk of the start takes
+constexpr int kChains = 2;         // without a deadline, so that the walk does not depend on the number of threads
+constexpr int kStepsPerLook = 16;  // at the clock
+// At most kLargeSteps up to kLargeTargets targets, and fewer by the square of their number beyond: in caves of 512x512
+// cells at 0.5x a step takes several milliseconds, and ten minutes of steps visit no more than none.
+constexpr double kLargeSteps = 1e6;
+constexpr double kLargeTargets = 1e4;
+
+// What a walk makes for, in the order of first visits.
 Tour tour_of(const Task& task, const Targets& targets, const Plan& plan) {
   const std::vector<NodeId>& walk = plan.walk;
-  Tour tour{.order = {}, .links = {}, .prize = plan.prize};
+  Tour tour{.order = {}, .links = {}, .prize = plan.prize, .cost = plan.cost};
+  const Graph& open = task.view().open();
   std::vector<char> taken(targets.end());
   double cost = 0;
   for (std::size_t i = 1; i < walk.size(); ++i) {
-    const Graph& open = task.view().open();
     if (walk[i] == walk[i - 1]) continue;  // a blocked move
     cost += open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
     const int target = targets.target_of(walk[i]);
@@ -50,39 +71,27 @@ std::vector<NodeId> walk_of(const Task& task, const Targets& targets, std::span<
   return walk;
 }
 
-// When annealing ends: after a number of steps, at a deadline, or at what comes first.
-class CoolingSchedule {
- public:
-  // steps: 0 if the deadline alone counts.
-  CoolingSchedule(std::int64_t steps, int steps_per_look, const Clock& clock)
-      : steps_(steps), steps_per_look_(steps_per_look), clock_(clock), time_(clock.seconds_left()) {}
-
-  // The share of the schedule that is over once `steps` were taken.
-  double done(std::int64_t steps) const {
-    double share = steps_ > 0 ? static_cast<double>(steps) / static_cast<double>(steps_) : 0;
-    if (clock_.has_deadline()) share = std::max(share, time_ > 0 ? 1 - clock_.seconds_left() / time_ : 1);
-    return clock_.stopped() ? 1 : share;
-  }
-  // How many steps to take then before the next look at the clock.
-  int steps_to_look(std::int64_t steps) const {
-    return steps_ == 0 ? steps_per_look_ : static_cast<int>(std::min<std::int64_t>(steps_per_look_, steps_ - steps));
-  }
-
- private:
-  std::int64_t steps_;
-  int steps_per_look_;
-  Clock clock_;
-  double time_;  // seconds in all
-};
-
-// What the chains of one task share.
+// The chains of one task, and when they end: after a number of steps, at a deadline, or at what comes first.
 struct Chains {
-  const LocalSearchOptions& options;
   const Task& task;
   const Targets& targets;
-  const CoolingSchedule& schedule;
   double bound;
   std::function<void(int visits)> tell;
+  std::int64_t most_steps;  // 0 if the deadline alone counts
+  Clock clock;
+  double seconds = clock.seconds_left();  // in all
+
+  // The share of the schedule that is over once a chain took so many steps.
+  double done(std::int64_t steps) const {
+    double share = most_steps > 0 ? static_cast<double>(steps) / static_cast<double>(most_steps) : 0;
+    if (clock.has_deadline()) share = std::max(share, seconds > 0 ? 1 - clock.seconds_left() / seconds : 1);
+    return clock.stopped() ? 1 : share;
+  }
+  // How many to take then before the next look at the clock.
+  int steps_to_look(std::int64_t steps) const {
+    return most_steps == 0 ? kStepsPerLook
+                           : static_cast<int>(std::min<std::int64_t>(kStepsPerLook, most_steps - steps));
+  }
 
   // A part of the schedule, and how far annealing is where it begins.
   struct Part {
@@ -93,59 +102,46 @@ struct Chains {
 
   // One run. steps: taken by the chain up to now.
   Tour run(Annealing& annealing, const Part& part, std::int64_t& steps) const {
-    for (double done = schedule.done(steps); done < part.last && !meets(annealing.best_prize(), bound);
-         done = schedule.done(steps)) {
-      const double share = std::clamp((done - part.first) / (part.last - part.first), 0.0, 1.0);
+    const auto ends = [&] { return meets(annealing.best_seen().prize, bound); };
+    for (double now = done(steps); now < part.last && !ends(); now = done(steps)) {
+      const double share = std::clamp((now - part.first) / (part.last - part.first), 0.0, 1.0);
       const double progress = part.progress + (1 - part.progress) * share;
-      const int count = schedule.steps_to_look(steps);
-      for (int i = 0; i < count && !meets(annealing.best_prize(), bound); ++i) annealing.step(progress);
+      const int count = steps_to_look(steps);
+      for (int i = 0; i < count && !ends(); ++i) annealing.step(progress);
       steps += count;
-      tell(annealing.best_visits());
+      tell(static_cast<int>(annealing.best_seen().order.size()));
     }
-    const std::vector<int>& order = annealing.best();
-    return {order, annealing.best_links(), annealing.best_prize()};
-  }
-
-  Annealing begin(const Tour& start, std::uint64_t seed) const {
-    Annealing annealing(targets, task.limit(), seed, options.annealing);
-    annealing.start(start.order, start.links);
-    return annealing;
+    return annealing.best();
   }
 
   // Where the choice matters, a population; else one run.
   Tour chain(const Tour& start, std::uint64_t seed) const {
     std::int64_t steps = 0;
-    Annealing annealing = begin(start, derive_seed(seed, 0));
-    if (!Annealing::is_selective(targets, start.prize, options.annealing)) {
-      return run(annealing, {.first = 0, .last = 1}, steps);
-    }
-    const Tour best = best_of_population(start, seed, steps);
-    annealing.start(best.order, best.links);
-    const LocalSearchOptions::Population& population = options.population;
-    return run(annealing, {.first = 1 - population.last_share, .last = 1, .progress = population.warm}, steps);
+    Annealing annealing(targets, task.limit(), derive_seed(seed, 0), start);
+    if (!Annealing::is_selective(targets, start.prize)) return run(annealing, {.first = 0, .last = 1}, steps);
+    annealing.start(best_of_population(start, seed, steps));
+    return run(annealing, {.first = 1 - kLastShare, .last = 1, .progress = kWarm}, steps);
   }
 
   // Short runs, then children of any two: each takes the place of the worst route, if it is better and new.
   Tour best_of_population(const Tour& start, std::uint64_t seed, std::int64_t& steps) const {
-    const auto& [size, first_share, children, last_share, warm] = options.population;
-    std::vector<Tour> routes(size, start);
-    for (int i = 0; i < size && schedule.done(steps) < first_share; ++i) {
-      Annealing annealing = begin(start, derive_seed(seed, 1, static_cast<std::uint64_t>(i)));
-      const double first = first_share * i / size;
-      routes[i] = run(annealing, {.first = first, .last = first + first_share / size}, steps);
+    std::vector<Tour> routes(kPopulation, start);
+    for (int i = 0; i < kPopulation && done(steps) < kFirstShare; ++i) {
+      Annealing annealing(targets, task.limit(), derive_seed(seed, 1, static_cast<std::uint64_t>(i)), start);
+      const double first = kFirstShare * i / kPopulation;
+      routes[i] = run(annealing, {.first = first, .last = first + kFirstShare / kPopulation}, steps);
     }
     const auto by_prize = [](const Tour& a, const Tour& b) { return a.prize < b.prize; };
     Rng rng(derive_seed(seed, 2));
-    const auto parents = static_cast<std::uint32_t>(size);
-    const double share = (1 - first_share - last_share) / children;
-    for (int i = 0; i < children; ++i) {
-      const double first = first_share + share * i;
-      if (schedule.done(steps) >= first + share) continue;
-      const auto one = rng.below(parents);
-      const auto other = (one + 1 + rng.below(parents - 1)) % parents;
-      Annealing annealing = begin(routes[one], derive_seed(seed, 3, static_cast<std::uint64_t>(i)));
+    const double share = (1 - kFirstShare - kLastShare) / kChildren;
+    for (int i = 0; i < kChildren; ++i) {
+      const double first = kFirstShare + share * i;
+      if (done(steps) >= first + share) continue;
+      const auto one = rng.below(kPopulation);
+      const auto other = (one + 1 + rng.below(kPopulation - 1)) % kPopulation;
+      Annealing annealing(targets, task.limit(), derive_seed(seed, 3, static_cast<std::uint64_t>(i)), routes[one]);
       annealing.recombine(routes[other].order);
-      Tour child = run(annealing, {.first = first, .last = first + share, .progress = warm}, steps);
+      Tour child = run(annealing, {.first = first, .last = first + share, .progress = kWarm}, steps);
       const auto worst = std::min_element(routes.begin(), routes.end(), by_prize);
       const bool is_new = std::none_of(routes.begin(), routes.end(), [&](const Tour& route) {
         return route.order == child.order ||
@@ -157,9 +153,9 @@ struct Chains {
   }
 };
 
-std::int64_t default_steps(std::int64_t targets, const LocalSearchOptions& options) {
-  const double largeness = std::max(1.0, static_cast<double>(targets) / options.large_targets);
-  const auto most = static_cast<std::int64_t>(options.large_steps / (largeness * largeness));
+std::int64_t default_steps(std::int64_t targets) {
+  const double largeness = std::max(1.0, static_cast<double>(targets) / kLargeTargets);
+  const auto most = static_cast<std::int64_t>(kLargeSteps / (largeness * largeness));
   const std::int64_t usual = std::min(3 * targets * targets, std::max<std::int64_t>(550'000, 100 * targets));
   return std::max<std::int64_t>(std::min(usual, most), 10'000);
 }
@@ -177,13 +173,13 @@ Plan LocalSearchPlanner::plan_from(const Task& task, Plan known, const Clock& cl
 
 // best: the best walk up to now.
 Plan LocalSearchPlanner::search(const Task& task, Plan best, const Clock& clock) {
-  const Targets targets(task, clock.share(options_.targets_share));
-  best.bound = std::min(max_prize(task, clock.share(options_.bound_share)), targets.total_prize());
+  const Targets targets(task, clock.share(kTargetsShare));
+  best.bound = std::min(max_prize(task, clock.share(kBoundShare)), targets.total_prize());
   std::unique_ptr<LpBound> lp;
   if (!meets(best.prize, best.bound) && !clock.passed()) lp = make_lp_bound(task, best.bound);
   if (lp != nullptr) {
-    const double work = clock.has_deadline() ? kNoLimit : options_.root_work;
-    lp->cut(best.prize, {.clock = clock.share(options_.bound_share), .work = work});
+    const double work = clock.has_deadline() ? kNoLimit : kRootWork;
+    lp->cut(best.prize, {.clock = clock.share(kBoundShare), .work = work});
     best.bound = std::min(best.bound, lp->bound());
   }
   best = best_start(task, targets, std::move(best), clock);
@@ -196,15 +192,15 @@ Plan LocalSearchPlanner::search(const Task& task, Plan best, const Clock& clock)
     lp->branch(best.prize, effort);
     improve(*lp, task, best);
   };
-  std::int64_t steps = default_steps(targets.end(), options_);
-  if (!clock.has_deadline() || options_.iterations > 0) {
-    search_for(options_.iterations > 0 ? options_.iterations : steps);
-    branch({.clock = clock, .work = options_.branch_work});
+  std::int64_t steps = default_steps(targets.end());
+  if (!clock.has_deadline() || iterations_ > 0) {
+    search_for(iterations_ > 0 ? iterations_ : steps);
+    branch({.clock = clock, .work = kBranchWork});
   } else {
     // Searches and branches in turn, each time twice as long, while time is left for more than the next turn. The last
     // search has the rest.
     while (lp != nullptr && !meets(best.prize, best.bound) &&
-           clock.seconds_left() > options_.branch_from * options_.step_s * static_cast<double>(steps)) {
+           clock.seconds_left() > kBranchFrom * kStepS * static_cast<double>(steps)) {
       const Stopwatch watch;
       search_for(steps);
       branch({.clock = clock.at_most(watch.seconds())});
@@ -224,8 +220,8 @@ Plan LocalSearchPlanner::best_start(const Task& task, const Targets& targets, Pl
   for (Planner* const planner : std::initializer_list<Planner*>{&depth_first, &beam, explorer_.get()}) {
     if (meets(best.prize, bound) || clock.passed()) break;
     if (planner == &beam && !beam_fits(task.view(), BeamOptions())) continue;
-    const Clock until = clock.share(options_.start_share);
-    if (planner == explorer_.get() && options_.explorer_visit_s * targets.end() > until.seconds_left()) continue;
+    const Clock until = clock.share(kStartShare);
+    if (planner == explorer_.get() && kExplorerVisitS * targets.end() > until.seconds_left()) continue;
     best = better_of(std::move(best), planner->plan(task, until));
     if (best.optimal) break;
   }
@@ -239,18 +235,22 @@ Plan LocalSearchPlanner::anneal(const Task& task, const Targets& targets, Plan b
   // What comes after the last step takes about as long as this.
   const Stopwatch watch;
   walk_of(task, targets, start.order);
-  clock = clock.sooner(options_.walk_times * watch.seconds());
-  const int count = clock.has_deadline() ? threads() : options_.chains;
-  const CoolingSchedule schedule((steps + count - 1) / count, options_.steps_per_look, clock);
+  clock = clock.sooner(kWalkTimes * watch.seconds());
+  const int count = clock.has_deadline() ? threads() : kChains;
   const auto caller = std::this_thread::get_id();
   const int visited = task.ground_count() + (targets.prize(targets.end()) > 0 ? 1 : 0);
   const auto tell = [&](int visits) {
     if (std::this_thread::get_id() == caller) clock.tell({.visited = visited + visits, .bound = best.bound});
   };
-  const Chains chains{options_, task, targets, schedule, best.bound, tell};
+  const Chains chains{.task = task,
+                      .targets = targets,
+                      .bound = best.bound,
+                      .tell = tell,
+                      .most_steps = (steps + count - 1) / count,
+                      .clock = clock};
   std::vector<Plan> found(count);
   parallel_for(count, [&](int chain) {
-    const Tour tour = chains.chain(start, derive_seed(options_.seed, static_cast<std::uint64_t>(chain)));
+    const Tour tour = chains.chain(start, derive_seed(seed_, static_cast<std::uint64_t>(chain)));
     found[chain] = plan_of_walk(task, walk_of(task, targets, tour.order));
   });
   const double bound = best.bound;

@@ -1,4 +1,4 @@
-#include "graphdrl/planners/lp_bound.h"
+#include "graphdrl/planners/bound.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,34 @@ class BranchAndCut final : public LpBound {
     }
   }
 
-  void cut(double prize, Effort effort) override;
-  void branch(double prize, Effort effort) override;
+  void cut(double prize, Effort effort) override {
+    begin(prize, effort);
+    apply({});
+    double last = kNoLimit;
+    for (int tired = 0; tired < kPatience && !beaten(bound_) && !spent();) {
+      const Outcome outcome = solve();
+      bound_ = std::min(bound_, rounded(program().bound()));
+      if (outcome != Outcome::kOptimal) break;
+      const bool falls = last - program().bound() >= kLeastFall * scale();
+      if (falls) relaxation_.remove_slack_rows();
+      if (relaxation_.separate(effort_.clock) == 0) break;
+      tired = falls ? 0 : tired + 1;
+      last = std::min(last, program().bound());
+    }
+  }
+
+  void branch(double prize, Effort effort) override {
+    begin(prize, effort);
+    if (!begun_) parts_.push({bound_, kNoLimit, 0, {}});
+    begun_ = true;
+    settle_bound();
+    for (bool go_on = true; go_on && !beaten(bound_) && !spent(); settle_bound()) {
+      Part part = parts_.top();
+      parts_.pop();
+      go_on = branch_on(std::move(part));
+    }
+  }
+
   double bound() const override { return beaten(bound_) ? prize_ : bound_; }
   const std::vector<NodeId>& walk() const override { return walk_; }
 
@@ -47,28 +73,114 @@ class BranchAndCut final : public LpBound {
   };
 
   LinearProgram& program() { return relaxation_.program(); }
-  double rounded(double bound) const;
+
+  // What walks can be worth at most, as prizes add up in steps.
+  double rounded(double bound) const {
+    const double step = relaxation_.prize_step();
+    return step > 0 ? std::floor(bound / step + kStepRounding) * step : bound;
+  }
+
   // Whether no walk within this bound is better than the best one known.
   bool beaten(double bound) const {
     const double step = relaxation_.prize_step();
     return bound <= (step > 0 ? prize_ + 0.5 * step : prize_ * (1 + kBoundMargin) + 1e-12);
   }
-  // What is left of the work, where `before` had been done.
-  double work_left(const Effort& effort, std::int64_t before) const {
-    return effort.work - static_cast<double>(relaxation_.work() - before);
+  // A step of prize, or where there is none all of it.
+  double scale() const { return relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_; }
+  void begin(double prize, const Effort& effort) {
+    prize_ = std::max(prize_, prize);
+    effort_ = effort;
+    work_before_ = relaxation_.work();
   }
-  bool spent(const Effort& effort, std::int64_t before) const {
-    return effort.clock.passed() || work_left(effort, before) <= 0;
+  double work_left() const { return effort_.work - static_cast<double>(relaxation_.work() - work_before_); }
+  bool spent() const { return effort_.clock.passed() || work_left() <= 0; }
+  Outcome solve() { return program().solve(effort_.clock, work_left()); }
+
+  void apply(const std::vector<Change>& changes) {
+    for (const Change& change : applied_) {
+      const Change& root = root_bounds_[change.column];
+      program().set_bounds(root.column, root.lower, root.upper);
+    }
+    for (const Change& change : changes) program().set_bounds(change.column, change.lower, change.upper);
+    applied_ = changes;
   }
-  void apply(const std::vector<Change>& changes);
-  void fix_by_reduced_costs(std::vector<Change>& changes);
-  void take_walk();
-  Outcome solve_part(Part& part, const Effort& effort, std::int64_t before);
-  bool branch_on(Part part, const Effort& effort, std::int64_t before);
-  void settle_bound();
+
+  // Columns that cannot leave their bound in a better walk stay there.
+  void fix_by_reduced_costs(std::vector<Change>& changes) {
+    const double step = relaxation_.prize_step();
+    const double goal = step > 0 ? (std::floor(prize_ / step + kStepRounding) + 1 - 2 * kStepRounding) * step : prize_;
+    const double slack = program().bound() - goal;
+    const auto costs = program().reduced_costs();
+    for (int column = 0; column < program().columns(); ++column) {
+      const double lower = program().lower(column);
+      const double upper = program().upper(column);
+      if (lower == upper || slack >= std::abs(costs[column])) continue;
+      const double kept = costs[column] < 0 ? lower : upper;
+      changes.push_back({column, kept, kept});
+      program().set_bounds(column, kept, kept);
+    }
+    applied_ = changes;
+  }
+
+  void take_walk() {
+    std::vector<NodeId> walk = relaxation_.walk();
+    const Plan plan = plan_of_walk(task_, walk);
+    const bool ends_well = task_.ends_anywhere() || walk.back() == task_.end();
+    if (plan.cost > task_.limit() || !ends_well || plan.prize <= prize_) return;
+    prize_ = plan.prize;
+    walk_ = std::move(walk);
+  }
+
+  // Solves a part with rounds of cuts, until it is beaten or cuts do not help.
+  Outcome solve_part(Part& part) {
+    apply(part.changes);
+    double last = kNoLimit;
+    for (int round = 0;; ++round) {
+      if (spent()) return Outcome::kStopped;
+      const Outcome outcome = solve();
+      if (outcome == Outcome::kInfeasible) return outcome;
+      part.estimate = std::min(part.estimate, program().bound());
+      part.bound = std::min(part.bound, rounded(part.estimate));
+      if (outcome != Outcome::kOptimal || beaten(part.bound)) return outcome;
+      const bool falls = round < kRoundsOfCuts && last - part.estimate >= kLeastFall * scale();
+      if (!falls && !relaxation_.integral()) return outcome;
+      last = part.estimate;
+      if (relaxation_.separate(effort_.clock) == 0) return outcome;
+    }
+  }
+
+  // Solves a part, and puts back what is left of it to solve. Whether to go on.
+  bool branch_on(Part part) {
+    relaxation_.remove_slack_rows();
+    const Outcome outcome = solve_part(part);
+    if (outcome == Outcome::kInfeasible || beaten(part.bound)) return true;
+    WalkRelaxation::Branches branches;
+    if (outcome != Outcome::kStopped) {
+      const bool integral = relaxation_.integral();
+      if (integral) take_walk();
+      if (beaten(part.bound)) return true;
+      if (!integral) fix_by_reduced_costs(part.changes);
+      if (!integral) branches = relaxation_.branches();
+    }
+    if (branches.first.empty() && branches.second.empty()) {  // late, or by rounding
+      parts_.push(std::move(part));
+      return false;
+    }
+    for (const auto& changes : {branches.first, branches.second}) {
+      Part child = part;
+      ++child.depth;
+      child.changes.insert(child.changes.end(), changes.begin(), changes.end());
+      parts_.push(std::move(child));
+    }
+    return true;
+  }
+
+  void settle_bound() { bound_ = parts_.empty() ? prize_ : std::min(bound_, std::max(prize_, parts_.top().bound)); }
 
   Task task_;
   WalkRelaxation relaxation_;
+  Effort effort_;
+  std::int64_t work_before_ = 0;  // the effort began
   double prize_ = 0;
   double bound_;
   std::vector<NodeId> walk_;
@@ -77,130 +189,6 @@ class BranchAndCut final : public LpBound {
   std::priority_queue<Part> parts_;
   bool begun_ = false;
 };
-
-// What walks can be worth at most, as prizes add up in steps.
-double BranchAndCut::rounded(double bound) const {
-  const double step = relaxation_.prize_step();
-  return step > 0 ? std::floor(bound / step + kStepRounding) * step : bound;
-}
-
-void BranchAndCut::cut(double prize, Effort effort) {
-  prize_ = std::max(prize_, prize);
-  apply({});
-  const std::int64_t before = relaxation_.work();
-  const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
-  double last = kNoLimit;
-  for (int tired = 0; tired < kPatience && !beaten(bound_) && !spent(effort, before);) {
-    const Outcome outcome = program().solve(effort.clock, work_left(effort, before));
-    bound_ = std::min(bound_, rounded(program().bound()));
-    if (outcome != Outcome::kOptimal) break;
-    const bool falls = last - program().bound() >= kLeastFall * scale;
-    if (falls) relaxation_.remove_slack_rows();
-    if (relaxation_.separate(effort.clock) == 0) break;
-    tired = falls ? 0 : tired + 1;
-    last = std::min(last, program().bound());
-  }
-}
-
-void BranchAndCut::apply(const std::vector<Change>& changes) {
-  for (const Change& change : applied_) {
-    const Change& root = root_bounds_[change.column];
-    program().set_bounds(root.column, root.lower, root.upper);
-  }
-  for (const Change& change : changes) program().set_bounds(change.column, change.lower, change.upper);
-  applied_ = changes;
-}
-
-// Columns that cannot leave their bound in a better walk stay there.
-void BranchAndCut::fix_by_reduced_costs(std::vector<Change>& changes) {
-  const double step = relaxation_.prize_step();
-  const double goal = step > 0 ? (std::floor(prize_ / step + kStepRounding) + 1 - 2 * kStepRounding) * step : prize_;
-  const double slack = program().bound() - goal;
-  const auto costs = program().reduced_costs();
-  for (int column = 0; column < program().columns(); ++column) {
-    const double lower = program().lower(column);
-    const double upper = program().upper(column);
-    if (lower == upper || slack >= std::abs(costs[column])) continue;
-    const double kept = costs[column] < 0 ? lower : upper;
-    changes.push_back({column, kept, kept});
-    program().set_bounds(column, kept, kept);
-  }
-  applied_ = changes;
-}
-
-void BranchAndCut::take_walk() {
-  std::vector<NodeId> walk = relaxation_.walk();
-  const Plan plan = plan_of_walk(task_, walk);
-  if (plan.cost > task_.limit() || (!task_.ends_anywhere() && walk.back() != task_.end()) || plan.prize <= prize_)
-    return;
-  prize_ = plan.prize;
-  walk_ = std::move(walk);
-}
-
-// Solves a part with rounds of cuts, until it is beaten or cuts do not help.
-Outcome BranchAndCut::solve_part(Part& part, const Effort& effort, std::int64_t before) {
-  apply(part.changes);
-  const double scale = relaxation_.prize_step() > 0 ? relaxation_.prize_step() : prize_;
-  double last = kNoLimit;
-  for (int round = 0;; ++round) {
-    if (spent(effort, before)) return Outcome::kStopped;
-    const Outcome outcome = program().solve(effort.clock, work_left(effort, before));
-    if (outcome == Outcome::kInfeasible) part.bound = -kNoLimit;
-    if (outcome == Outcome::kInfeasible) return outcome;
-    part.estimate = std::min(part.estimate, program().bound());
-    part.bound = std::min(part.bound, rounded(part.estimate));
-    if (outcome != Outcome::kOptimal || beaten(part.bound)) return outcome;
-    if (round >= kRoundsOfCuts || last - part.estimate < kLeastFall * scale) {
-      if (!relaxation_.integral()) return outcome;
-    }
-    last = part.estimate;
-    if (relaxation_.separate(effort.clock) == 0) return outcome;
-  }
-}
-
-void BranchAndCut::settle_bound() {
-  bound_ = parts_.empty() ? prize_ : std::min(bound_, std::max(prize_, parts_.top().bound));
-}
-
-// Solves a part, and puts back what is left of it to solve. Whether to go on.
-bool BranchAndCut::branch_on(Part part, const Effort& effort, std::int64_t before) {
-  relaxation_.remove_slack_rows();
-  const Outcome outcome = solve_part(part, effort, before);
-  if (outcome == Outcome::kInfeasible || beaten(part.bound)) return true;
-  if (outcome == Outcome::kStopped) {
-    parts_.push(std::move(part));
-    return false;
-  }
-  const bool integral = relaxation_.integral();
-  if (integral) take_walk();
-  if (beaten(part.bound)) return true;
-  if (!integral) fix_by_reduced_costs(part.changes);
-  const WalkRelaxation::Branches branches = integral ? WalkRelaxation::Branches() : relaxation_.branches();
-  if (branches.first.empty() && branches.second.empty()) {  // late, or by rounding
-    parts_.push(std::move(part));
-    return false;
-  }
-  for (const auto& changes : {branches.first, branches.second}) {
-    Part child = part;
-    ++child.depth;
-    child.changes.insert(child.changes.end(), changes.begin(), changes.end());
-    parts_.push(std::move(child));
-  }
-  return true;
-}
-
-void BranchAndCut::branch(double prize, Effort effort) {
-  prize_ = std::max(prize_, prize);
-  const std::int64_t before = relaxation_.work();
-  if (!begun_) parts_.push({bound_, kNoLimit, 0, {}});
-  begun_ = true;
-  settle_bound();
-  for (bool go_on = true; go_on && !beaten(bound_) && !spent(effort, before); settle_bound()) {
-    Part part = parts_.top();
-    parts_.pop();
-    go_on = branch_on(std::move(part), effort, before);
-  }
-}
 
 }  // namespace
 

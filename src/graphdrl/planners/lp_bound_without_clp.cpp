@@ -1,5 +1,5 @@
 // Takes the place of lp_bound.cpp in a build without CLP.
-#include "graphdrl/planners/lp_bound.h"
+#include "graphdrl/planners/bound.h"
 
 namespace graphdrl {
 

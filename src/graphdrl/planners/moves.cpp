@@ -9,6 +9,21 @@ namespace {
 
 constexpr double kTiny = 1e-300;  // a place that costs nothing can be paid for when nothing is left
 
+constexpr std::uint32_t kMostStrings = 2;  // taken out in a step
+constexpr std::uint32_t kShortString = 5;  // targets at most, in most steps
+constexpr std::uint32_t kLongString = 40;  // targets at most, in the others: a branch of a maze or of a tree
+constexpr double kBlink = 0.03;   // share of places passed over, so that the same targets go to different places
+constexpr int kTwoOptNear = 10;   // nearest targets that 2-opt tries
+constexpr int kTurnNear = 5;      // nearest targets that a random turn draws from
+constexpr int kTurnTries = 4;     // draws until one can be paid for
+constexpr int kGrowNear = 10;     // nearest targets by which a region grows from each of its own
+constexpr int kGrowFailures = 5;  // targets that do not fit, until a region grows no more
+constexpr int kSeedTries = 20;    // draws of a target that is in the route, or is not
+
+constexpr double kLeastRegion = 0.1;  // of all targets, taken from the other route of two
+constexpr double kMostRegion = 0.5;
+constexpr double kLargestRegion = 1000;  // targets, likewise: more take longer than a look at the clock may wait
+
 bool have_equal_prizes(const Targets& targets) {
   for (int target = 2; target < targets.end(); ++target) {
     if (targets.prize(target) != targets.prize(1)) return false;
@@ -53,13 +68,13 @@ struct PlaceSearch {
   const Targets& targets;
   const Route& route;
   Rng& rng;
-  std::uint64_t blink;  // random numbers below it pass a place over
-  int last;             // before the end
-  Insertion best;       // so far; at first what a place may cost
+  int last;        // before the end
+  Insertion best;  // so far; at first what a place may cost
 
   void consider(int after, double in, double out) {
     const double added = in + out - route.link(after);
-    if (added >= best.added || rng.next() < blink) return;
+    constexpr auto kPassedOver = static_cast<std::uint64_t>(kBlink * 0x1p64);
+    if (added >= best.added || rng.next() < kPassedOver) return;
     best = {.target = best.target, .added = added, .after = after, .in = in, .out = out};
   }
 
@@ -107,10 +122,9 @@ struct PlaceSearch {
 
 }  // namespace
 
-Draft::Draft(const Targets& on, double cost_limit, std::uint64_t seed, const AnnealingOptions& how)
+Draft::Draft(const Targets& on, double cost_limit, std::uint64_t seed)
     : targets(on),
       limit(cost_limit),
-      options(how),
       rng(seed),
       route(on),
       mean_prize(on.total_prize() / std::max(1, on.end())),
@@ -158,10 +172,10 @@ std::optional<Reversal> Reversal::propose_near(Draft& draft, int target) {
     if (found == near.end()) return std::nullopt;
     target = *found;
   }
-  const auto near = nearest(draft.targets, target, draft.options.turn_near);
+  const auto near = nearest(draft.targets, target, kTurnNear);
   if (near.empty()) return std::nullopt;
   const double slack = draft.limit - route.cost();
-  for (int i = 0; i < draft.options.turn_tries; ++i) {
+  for (int i = 0; i < kTurnTries; ++i) {
     const int other = near[draft.rng.below(static_cast<std::uint32_t>(near.size()))];
     const bool forward = (draft.rng.next() >> 63) != 0;
     if (!route.contains(other) || (!forward && (target == 0 || other == 0))) continue;
@@ -178,7 +192,6 @@ std::optional<Insertion> Insertion::propose(Draft& draft, int target) {
   PlaceSearch search{.targets = targets,
                      .route = route,
                      .rng = draft.rng,
-                     .blink = static_cast<std::uint64_t>(draft.options.blink * 0x1p64),
                      .last = route.previous(targets.end()),
                      .best = {.target = target, .added = most}};
   if (targets.symmetric()) {
@@ -228,7 +241,7 @@ void TwoOpt::improve(Draft& draft) {
 // Replaces the way on from a target, or the way to it, by one to a nearer target, where that makes the route cheaper.
 bool TwoOpt::improve_at(int target, Draft& draft) {
   const Route& route = draft.route;
-  const auto near = nearest(draft.targets, target, draft.options.two_opt_near);
+  const auto near = nearest(draft.targets, target, kTwoOptNear);
   for (const bool forward : {true, false}) {
     if (!forward && target == 0) continue;
     const double link = route.link(forward ? target : route.previous(target));
@@ -248,11 +261,9 @@ bool TwoOpt::improve_at(int target, Draft& draft) {
 
 void ruin(Draft& draft, int seed) {
   draft.removed.clear();
-  const AnnealingOptions& options = draft.options;
   if (draft.targets.symmetric() && draft.rng.uniform() < draft.style().no_string_share) return;
-  int strings = 1 + static_cast<int>(draft.rng.below(static_cast<std::uint32_t>(options.most_strings)));
-  const bool is_long = draft.rng.uniform() < draft.style().long_share;
-  const auto longest = static_cast<std::uint32_t>(is_long ? options.long_string : options.short_string);
+  std::uint32_t strings = 1 + draft.rng.below(kMostStrings);
+  const std::uint32_t longest = draft.rng.uniform() < draft.style().long_share ? kLongString : kShortString;
   const auto take_one = [&](int target) {
     if (target == 0 || !draft.route.contains(target)) return;
     StringRemoval::propose(draft, target, longest).apply(draft);
@@ -285,25 +296,24 @@ void recreate(Draft& draft, int seed) {
 
 void move_region(Draft& draft, int seed, std::uint32_t longest) {
   const Route& route = draft.route;
-  const AnnealingOptions& options = draft.options;
   draft.removed.clear();
-  for (int i = 0; i < options.seed_tries && route.contains(seed); ++i) seed = draft.random_target();
+  for (int i = 0; i < kSeedTries && route.contains(seed); ++i) seed = draft.random_target();
   int first = 0;
-  for (int i = 0; i < options.seed_tries && (first == 0 || !route.contains(first)); ++i) first = draft.random_target();
+  for (int i = 0; i < kSeedTries && (first == 0 || !route.contains(first)); ++i) first = draft.random_target();
   if (first != 0 && route.contains(first)) {
     StringRemoval{.first = first, .length = static_cast<int>(1 + draft.rng.below(longest))}.apply(draft);
   }
   std::vector<int>& region = draft.region;
   region.assign(1, seed);
   int failures = 0;
-  for (std::size_t i = 0; i < region.size() && failures < options.grow_failures; ++i) {
+  for (std::size_t i = 0; i < region.size() && failures < kGrowFailures; ++i) {
     const int target = region[i];
     put_in(target, draft);
     if (!route.contains(target)) {
       ++failures;
       continue;
     }
-    for (const int next : nearest(draft.targets, target, options.grow_near)) {
+    for (const int next : nearest(draft.targets, target, kGrowNear)) {
       if (draft.marked[next] != 0 || route.contains(next)) continue;
       draft.marked[next] = 1;
       region.push_back(next);
@@ -314,10 +324,8 @@ void move_region(Draft& draft, int seed, std::uint32_t longest) {
 }
 
 void cross_over(Draft& draft, const std::vector<int>& other) {
-  const AnnealingOptions& options = draft.options;
-  const double share = options.least_region + (options.most_region - options.least_region) * draft.rng.uniform();
-  const double most = options.largest_region;
-  const auto size = static_cast<std::size_t>(std::clamp(share * draft.targets.end(), 1.0, most));
+  const double share = kLeastRegion + (kMostRegion - kLeastRegion) * draft.rng.uniform();
+  const auto size = static_cast<std::size_t>(std::clamp(share * draft.targets.end(), 1.0, kLargestRegion));
   std::vector<int>& region = draft.region;
   region.assign(1, draft.random_target());
   draft.marked[region[0]] = 1;

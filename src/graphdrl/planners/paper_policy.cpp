@@ -22,12 +22,10 @@ const PaperFeatureEncoder& PaperPolicy::encoder_for(const View& view) {
 
 void PaperPolicy::q_values(std::span<const Observation> observations, std::span<float> q) {
   while (!observations.empty()) {
-    std::size_t count = 1;
-    std::int64_t nodes = observations[0].view().node_count();
-    while (count < observations.size()) {
+    std::size_t count = 0;
+    for (std::int64_t nodes = 0; count < observations.size(); ++count) {
       nodes += observations[count].view().node_count();
-      if (nodes > kMaxBatchNodes) break;
-      ++count;
+      if (count > 0 && nodes > kMaxBatchNodes) break;
     }
     q_values_of_block(observations.first(count), q.first(count * kActionCount));
     observations = observations.subspan(count);

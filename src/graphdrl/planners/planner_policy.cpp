@@ -29,7 +29,7 @@ void PlannerPolicy::act(std::span<const Observation> observations, std::span<int
 bool PlannerPolicy::Followed::leads_on(const Observation& observation) const {
   const std::size_t step = observation.walk.size() - 1;
   return step >= before && step - before < walk.size() && hashes[step - before] == observation.walk_hash &&
-         end == observation.task->end() && budget == observation.task->budget();
+         task.end() == observation.task->end() && task.budget() == observation.task->budget();
 }
 
 std::span<const NodeId> PlannerPolicy::Followed::rest(const Observation& observation) const {
@@ -43,7 +43,8 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
                              : whole.rest(observation.position, std::max(0.0, whole.budget() - observation.spent),
                                           observation.ground());
   const auto older = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
-    return whole.view().is_later_than(plan.view) && plan.leads_on(observation);
+    const View& then = plan.task.view();
+    return (whole.view() == then || whole.view().is_later_than(then)) && plan.leads_on(observation);
   });
   Plan plan;
   if (older != plans_.end() && holds(task, older->rest(observation))) {
@@ -52,9 +53,7 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
   } else {
     plan = planner_->plan(task, clock);
   }
-  Followed followed{.view = whole.view(),
-                    .end = whole.end(),
-                    .budget = whole.budget(),
+  Followed followed{.task = whole,
                     .before = observation.walk.size() - 1,
                     .walk = std::move(plan.walk),
                     .hashes = {observation.walk_hash}};
@@ -68,7 +67,8 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
 
 int PlannerPolicy::act_on(const Observation& observation, const Clock& clock) {
   const auto known = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
-    return plan.view == observation.view() && plan.leads_on(observation);
+    return plan.task.view() == observation.view() && plan.leads_on(observation) &&
+           plan.task.has_sets_of(*observation.task);
   });
   const std::span<const NodeId> rest =
       (known != plans_.end() ? *known : plan_anew(observation, clock)).rest(observation);

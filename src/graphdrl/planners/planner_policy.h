@@ -10,8 +10,8 @@
 namespace graphdrl {
 
 // Follows the plan of a planner and stops at its end. Plans at the start of a walk, and anew from where it stands once
-// the walk has left its plan or more is known of the world [View::version()]; what was left of the plan is where the
-// planner goes on from then.
+// the walk has left its plan, more is known of the world [View::version()] or others have claimed nodes; what was left
+// of the plan is where the planner goes on from then.
 class PlannerPolicy final : public Policy {
  public:
   explicit PlannerPolicy(std::unique_ptr<Planner> planner) : planner_(std::move(planner)) {}
@@ -21,9 +21,7 @@ class PlannerPolicy final : public Policy {
   // A plan from somewhere on a walk, and the hash of that walk up to each of its steps, by which an episode is known to
   // be on it.
   struct Followed {
-    View view;
-    NodeId end;
-    double budget;       // of the whole walk
+    Task task;           // of the whole walk
     std::size_t before;  // steps of the walk before the plan
     std::vector<NodeId> walk;
     std::vector<std::uint64_t> hashes;  // as walk

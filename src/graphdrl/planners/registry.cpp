@@ -42,46 +42,41 @@ std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t most
   return good ? std::optional(value) : std::nullopt;
 }
 
+SharedExplorer read_explorer_parameters(const std::string& file) {
+  TrainedPolicy policy = read_policy(file);
+  if (auto* const explorer = std::get_if<SharedExplorer>(&policy)) return *explorer;
+  throw Error({.what = "the policy is no explorer", .expected = "one that `graphdrl train` wrote", .where = file});
+}
+
 // What stands behind the first colon of a name.
 void parse_parameters(const std::string& name, std::string_view text, PolicySpec& spec) {
+  const auto check = [&](bool good, const char* what, const std::string& expected) {
+    if (!good) throw Error({.what = what, .expected = expected, .got = in_quotes(name, 200)});
+  };
   if (spec.kind == PolicyKind::kSearch) {
     const auto iterations = parse_count(text, kMostIterations);
-    if (!iterations) {
-      throw Error({.what = "bad number of iterations",
-                   .expected = fmt::format("search:N with N from 1 to {}", kMostIterations),
-                   .got = in_quotes(name, 200)});
-    }
+    check(iterations.has_value(), "bad number of iterations",
+          fmt::format("search:N with N from 1 to {}", kMostIterations));
     spec.iterations = *iterations;
     return;
   }
-  if (const std::size_t colon = text.find(':'); spec.kind == PolicyKind::kGuided && colon != std::string_view::npos) {
-    spec.file = text.substr(colon + 1);
-    text = text.substr(0, colon);
-    if (spec.file.empty()) {
-      throw Error({.what = "no policy file is named", .expected = "guided:W:FILE", .got = in_quotes(name, 200)});
-    }
-  }
+  const std::size_t colon = spec.kind == PolicyKind::kGuided ? text.find(':') : std::string_view::npos;
+  const std::string file(colon == std::string_view::npos ? "" : text.substr(colon + 1));
+  check(colon == std::string_view::npos || !file.empty(), "no policy file is named", "guided:W:FILE");
+  text = text.substr(0, colon);
   const auto width = parse_count(text, kMaxBeamWidth);
-  if (!width) {
-    throw Error({.what = "bad beam width",
-                 .expected = fmt::format("{}:W with W from 1 to {}", name.substr(0, name.find(':')), kMaxBeamWidth),
-                 .got = in_quotes(name, 200)});
-  }
+  check(width.has_value(), "bad beam width",
+        fmt::format("{}:W with W from 1 to {}", name.substr(0, name.find(':')), kMaxBeamWidth));
   spec.width = static_cast<int>(*width);
+  if (!file.empty()) spec.trained = read_explorer_parameters(file);
 }
 
 std::unique_ptr<Planner> explorer_planner(SharedExplorer parameters) {
   return std::make_unique<ExplorerPlanner>(std::make_shared<ExplorerScorer>(std::move(parameters)));
 }
 
-std::unique_ptr<Planner> search_planner(const LocalSearchOptions& options = {}) {
-  return std::make_unique<LocalSearchPlanner>(options, explorer_planner(builtin_explorer()));
-}
-
-SharedExplorer read_explorer_parameters(const std::string& file) {
-  TrainedPolicy policy = read_policy(file);
-  if (auto* const explorer = std::get_if<SharedExplorer>(&policy)) return *explorer;
-  throw Error({.what = "the policy is no explorer", .expected = "one that `graphdrl train` wrote", .where = file});
+std::unique_ptr<Planner> search_planner(std::int64_t iterations = 0, std::uint64_t seed = 1) {
+  return std::make_unique<LocalSearchPlanner>(iterations, seed, explorer_planner(builtin_explorer()));
 }
 
 }  // namespace
@@ -99,15 +94,17 @@ PolicySpec parse_policy(const std::string& name) {
   if (!std::filesystem::exists(name, error)) {
     throw Error({.what = "no such policy", .expected = policy_names(), .got = in_quotes(name, 200)});
   }
-  return {.kind = PolicyKind::kFile, .file = name, .label = std::filesystem::path(name).stem().string()};
+  return {
+      .kind = PolicyKind::kFile, .trained = read_policy(name), .label = std::filesystem::path(name).stem().string()};
 }
 
 bool plans(const PolicySpec& spec) {
-  if (spec.kind == PolicyKind::kFile) return std::holds_alternative<SharedExplorer>(read_policy(spec.file));
+  if (spec.kind == PolicyKind::kFile) return std::holds_alternative<SharedExplorer>(spec.trained);
   return spec.kind != PolicyKind::kRandom && spec.kind != PolicyKind::kRandomWalk;
 }
 
 std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed) {
+  const auto* const trained = std::get_if<SharedExplorer>(&spec.trained);
   switch (spec.kind) {
     case PolicyKind::kRandom:
     case PolicyKind::kRandomWalk:
@@ -119,30 +116,28 @@ std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed
     case PolicyKind::kBeam:
       return std::make_unique<BeamPlanner>(BeamOptions{.width = spec.width});
     case PolicyKind::kGuided: {
-      const auto scorer = std::make_shared<ExplorerScorer>(spec.file.empty() ? builtin_explorer()
-                                                                             : read_explorer_parameters(spec.file));
+      const auto scorer = std::make_shared<ExplorerScorer>(*trained == nullptr ? builtin_explorer() : *trained);
       return std::make_unique<BeamPlanner>(BeamOptions{.width = spec.width}, scorer,
                                            std::make_unique<ExplorerPlanner>(scorer));
     }
     case PolicyKind::kExplorer:
       return explorer_planner(builtin_explorer());
     case PolicyKind::kSearch:
-      return search_planner({.iterations = spec.iterations, .seed = seed});
+      return search_planner(spec.iterations, seed);
     case PolicyKind::kExact:
       return std::make_unique<ExactPlanner>(search_planner());
     case PolicyKind::kFile:
       break;
   }
-  TrainedPolicy policy = read_policy(spec.file);
-  auto* const explorer = std::get_if<SharedExplorer>(&policy);
-  return explorer != nullptr ? explorer_planner(*explorer) : nullptr;
+  return trained != nullptr ? explorer_planner(*trained) : nullptr;
 }
 
 std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) {
-  if (spec.kind == PolicyKind::kRandom) return std::make_unique<RandomPolicy>(seed);
-  if (spec.kind == PolicyKind::kRandomWalk) return std::make_unique<RandomWalkPolicy>(seed);
+  if (spec.kind == PolicyKind::kRandom || spec.kind == PolicyKind::kRandomWalk) {
+    return std::make_unique<RandomPolicy>(seed, /*blocked_too=*/spec.kind == PolicyKind::kRandom);
+  }
   if (auto planner = make_planner(spec, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
-  return std::make_unique<PaperPolicy>(std::get<PaperParameters>(read_policy(spec.file)));
+  return std::make_unique<PaperPolicy>(std::get<PaperParameters>(spec.trained));
 }
 
 TrainedPolicy read_policy(const std::string& name) {

@@ -27,23 +27,27 @@ enum class PolicyKind {
   kFile,  // an explorer, or a network of the paper
 };
 
+// A trained network: that of a file, or `explorer`, the one in the program. Throws Error where there is none.
+using TrainedPolicy = std::variant<SharedExplorer, PaperParameters>;
+TrainedPolicy read_policy(const std::string& name);
+
 // A policy's name, taken apart.
 struct PolicySpec {
   PolicyKind kind;
   int width = BeamOptions{}.width;  // of beam and guided
   std::int64_t iterations = 0;      // of search; 0: as many as the world's size asks for, or the time allows
-  std::string file = {};            // of kFile; of guided, empty for the explorer in the program
+  TrainedPolicy trained = {};       // of kFile; of guided, null for the explorer in the program
   std::string label = {};           // in tables: the name given, a file's stem
 };
 
 // `random`, `random-walk`, `dfs`, `nearest`, `beam[:W]`, `guided[:W[:FILE]]`, `explorer`, `search[:ITERATIONS]`,
-// `exact`, or a policy file. Throws Error on any other name.
+// `exact`, or a policy file, which is read here. Throws Error on any other name, and on a file that holds no policy.
 PolicySpec parse_policy(const std::string& name);
 
-// Whether it plans whole walks. Throws Error on a file that holds no policy.
+// Whether it plans whole walks.
 bool plans(const PolicySpec& spec);
 
-// Null where it chooses step by step. seed: of `search`. Throws Error on a file that holds no policy.
+// Null where it chooses step by step. seed: of `search`.
 std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed = 1);
 // Whatever it is; planners are followed step by step. seed: of `search` and of random policies.
 std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed);
@@ -54,10 +58,6 @@ inline std::unique_ptr<Planner> make_planner(const std::string& name, std::uint6
 inline std::unique_ptr<Policy> make_policy(const std::string& name, std::uint64_t seed) {
   return make_policy(parse_policy(name), seed);
 }
-
-// A trained network: that of a file, or `explorer`, the one in the program. Throws Error where there is none.
-using TrainedPolicy = std::variant<SharedExplorer, PaperParameters>;
-TrainedPolicy read_policy(const std::string& name);
 
 // "beam[:W], guided[:W[:FILE]], dfs, exact, …, random-walk or a policy file", for help and errors.
 std::string policy_names();

@@ -12,9 +12,7 @@ void Route::assign(const std::vector<int>& order, const std::vector<double>& lin
   int last = 0;
   for (std::size_t i = 0; i <= order.size(); ++i) {
     const int target = i < order.size() ? order[i] : end;
-    stops_[last].next = target;
-    stops_[last].link = known_or(links[i], last, target);
-    stops_[target].previous = last;
+    connect(last, target, known_or(links[i], last, target));
     cost_ += stops_[last].link;
     if (target != end) prize_ += targets_->prize(target);
     last = target;
@@ -75,63 +73,51 @@ void Route::undo() {
   prize_ = kept_prize_;
 }
 
-std::vector<int> Route::order() const {
-  std::vector<int> order;
-  for (int target = stops_[0].next; target != targets_->end(); target = stops_[target].next) order.push_back(target);
-  return order;
+void Route::connect(int from, int to, double link) {
+  stops_[from].next = to;
+  stops_[from].link = link;
+  stops_[to].previous = from;
 }
 
 void Route::put(int target, int after, double in, double out) {
-  Stop& before = stops_[after];
-  Stop& stop = stops_[target];
-  const int next = before.next;
+  const Stop before = stops_[after];
   cost_ += in + out - before.link;
   prize_ += targets_->prize(target);
-  before.next = target;
-  before.link = in;
-  stop = {
-      .next = next, .previous = after, .link = out, .label = before.label + (stops_[next].label - before.label) / 2};
-  stops_[next].previous = target;
-  if (stop.label == before.label) make_room(target);
+  stops_[target].label = before.label + (stops_[before.next].label - before.label) / 2;
+  connect(after, target, in);
+  connect(target, before.next, out);
+  if (stops_[target].label == before.label) make_room(target);
 }
 
 void Route::take(int target, double link) {
   Stop& stop = stops_[target];
-  Stop& before = stops_[stop.previous];
-  cost_ += link - before.link - stop.link;
+  cost_ += link - stops_[stop.previous].link - stop.link;
   prize_ -= targets_->prize(target);
-  before.next = stop.next;
-  before.link = link;
-  stops_[stop.next].previous = stop.previous;
+  connect(stop.previous, stop.next, link);
   stop.next = kNone;
 }
 
 void Route::turn(int first, int last, double in, double out) {
-  const int before = stops_[first].previous;
+  int previous = stops_[first].previous;
   const int after = stops_[last].next;
-  cost_ += in + out - stops_[before].link - stops_[last].link;
+  cost_ += in + out - stops_[previous].link - stops_[last].link;
   turned_.clear();
   labels_.clear();
   for (int target = first; target != after; target = stops_[target].next) {
     turned_.push_back(target);
     labels_.push_back(stops_[target].label);
   }
-  int previous = before;
   double link = in;
-  const std::size_t count = turned_.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const int target = turned_[count - 1 - i];
-    stops_[previous].next = target;
-    stops_[previous].link = link;
-    stops_[target].previous = previous;
-    stops_[target].label = labels_[i];
+  for (const std::int64_t label : labels_) {
+    const int target = turned_.back();
+    turned_.pop_back();
+    connect(previous, target, link);
+    stops_[target].label = label;
     // The way on is the one that led here, turned round.
-    link = i + 1 < count ? stops_[turned_[count - 2 - i]].link : out;
+    link = turned_.empty() ? out : stops_[turned_.back()].link;
     previous = target;
   }
-  stops_[previous].next = after;
-  stops_[previous].link = link;
-  stops_[after].previous = previous;
+  connect(previous, after, link);
 }
 
 // Spreads the labels around a target, over as many neighbours as it takes [Dietz and Sleator 1987].

@@ -52,8 +52,6 @@ class Route {
     for (const Change& change : changes_) touch(change.target, change.other);
   }
 
-  std::vector<int> order() const;  // without target 0 and the end
-
  private:
   static constexpr std::int64_t kGap = std::int64_t{1} << 32;       // between labels
   static constexpr std::int64_t kLeastGap = std::int64_t{1} << 16;  // where room was made
@@ -73,6 +71,7 @@ class Route {
     double out;
   };
 
+  void connect(int from, int to, double link);
   double known_or(double link, int from, int to) const;  // the cost that Targets know, else `link`
   void put(int target, int after, double in, double out);
   void take(int target, double link);

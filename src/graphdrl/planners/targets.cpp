@@ -38,21 +38,22 @@ Targets::Targets(const Task& task, const Clock& clock) : view_(task.view()) {
 
   const bool with_table = end() <= kTableTargets;
   if (with_table) table_.assign(nodes_.size() * prizes_.size(), kNoLimit);
-  find_near(view.open(), limit, near_, near_begin_, with_table ? nullptr : &near_cost_, clock);
-  if (view.open().directed()) find_near(view.into(), limit, into_, into_begin_, nullptr, clock);
+  near_ = find_near(view.open(), limit, /*with_costs=*/true, clock);
+  if (view.open().directed()) into_ = find_near(view.into(), limit, /*with_costs=*/false, clock);
 }
 
-void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near, std::vector<std::int64_t>& begin,
-                        std::vector<double>* costs, const Clock& clock) {
+// with_costs: keeps the costs found, of all within the limit where there is a table.
+Targets::Lists Targets::find_near(const Graph& graph, double limit, bool with_costs, const Clock& clock) {
   NearestFirst search;
-  const bool fills_table = !table_.empty() && &near == &near_;
-  begin.assign(1, 0);
+  Lists near{.targets = {}, .begin = {0}};
+  const bool fills_table = with_costs && has_table();
+  const bool lists_costs = with_costs && !has_table();
   int met_since_look = 0;
   for (int from = 0; from < end(); ++from) {
-    double* const row = fills_table ? table_.data() + static_cast<std::size_t>(from) * prizes_.size() : nullptr;
-    if (row != nullptr) {
-      row[from] = 0;
-      row[end()] = to_end_[from];
+    double* const costs = fills_table ? row(from) : nullptr;
+    if (fills_table) {
+      costs[from] = 0;
+      costs[end()] = to_end_[from];
     }
     int left = kNearest;
     int met = 0;
@@ -61,21 +62,22 @@ void Targets::find_near(const Graph& graph, double limit, std::vector<int>& near
       const int target = numbers_[node];
       if (target >= 0) {
         if (left > 0) {
-          near.push_back(target);
-          if (costs != nullptr) costs->push_back(cost);
+          near.targets.push_back(target);
+          if (lists_costs) near_cost_.push_back(cost);
           --left;
         }
-        if (row != nullptr) row[target] = cost;
+        if (fills_table) costs[target] = cost;
       }
-      return row == nullptr && (left == 0 || met >= kMostMet) ? Next::kEnd : Next::kThrough;
+      return !fills_table && (left == 0 || met >= kMostMet) ? Next::kEnd : Next::kThrough;
     });
-    begin.push_back(std::ssize(near));
+    near.begin.push_back(std::ssize(near.targets));
     met_since_look += met;
     if (met_since_look < kMetPerLook) continue;
     met_since_look = 0;
     if (clock.passed()) complete_ = false;
-    if (!complete_) return;
+    if (!complete_) break;
   }
+  return near;
 }
 
 Targets Targets::after(int first) const {
@@ -104,23 +106,22 @@ Targets Targets::after(int first) const {
   rest.table_.resize(rest.nodes_.size() * rest.prizes_.size());
   for (int from = 0; from < last; ++from) {
     const double* const all = row(old[from]);
-    double* const left = rest.table_.data() + static_cast<std::size_t>(from) * rest.prizes_.size();
+    double* const left = rest.row(from);
     for (int to = 0; to < last; ++to) left[to] = all[old[to]];
     left[last] = all[end()];
   }
-  const auto take_lists = [&](const std::vector<int>& lists, const std::vector<std::int64_t>& begin,
-                              std::vector<int>& rest_lists, std::vector<std::int64_t>& rest_begin) {
-    rest_lists.clear();
-    rest_begin.assign(1, 0);
+  const auto left_of = [&](const Lists& lists) {
+    Lists left{.targets = {}, .begin = {0}};
     for (int target = 0; target < last; ++target) {
-      for (const int near : list(lists, begin, old[target])) {
-        if (number[near] >= 0) rest_lists.push_back(number[near]);
+      for (const int near : lists[old[target]]) {
+        if (number[near] >= 0) left.targets.push_back(number[near]);
       }
-      rest_begin.push_back(std::ssize(rest_lists));
+      left.begin.push_back(std::ssize(left.targets));
     }
+    return left;
   };
-  take_lists(near_, near_begin_, rest.near_, rest.near_begin_);
-  if (!symmetric()) take_lists(into_, into_begin_, rest.into_, rest.into_begin_);
+  rest.near_ = left_of(near_);
+  if (!symmetric()) rest.into_ = left_of(into_);
   return rest;
 }
 
@@ -137,14 +138,14 @@ double Targets::searched_cost(int from, int to, double most, NearestFirst& searc
 }
 
 double Targets::near_cost(int from, int to) const {
-  for (std::int64_t i = near_begin_[from]; i < near_begin_[from + 1]; ++i) {
-    if (near_[i] == to) return near_cost_[i];
-  }
-  if (!symmetric()) return kNoLimit;
-  for (std::int64_t i = near_begin_[to]; i < near_begin_[to + 1]; ++i) {
-    if (near_[i] == from) return near_cost_[i];
-  }
-  return kNoLimit;
+  const auto listed = [&](int at, int other) {
+    for (std::int64_t i = near_.begin[at]; i < near_.begin[at + 1]; ++i) {
+      if (near_.targets[i] == other) return near_cost_[i];
+    }
+    return kNoLimit;
+  };
+  const double cost = listed(from, to);
+  return cost == kNoLimit && symmetric() ? listed(to, from) : cost;
 }
 
 }  // namespace graphdrl

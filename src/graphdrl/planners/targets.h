@@ -28,7 +28,7 @@ class Targets {
   // Whether no way through other targets is cheaper than the cost known: everywhere but in a complete graph whose costs
   // are not metric.
   bool metric() const { return view_.open().straight_ways_suffice(); }
-  bool symmetric() const { return into_begin_.empty(); }
+  bool symmetric() const { return into_.begin.empty(); }
   int end() const { return static_cast<int>(nodes_.size()); }  // the number of the end, and the count of the others
   NodeId node(int target) const { return nodes_[target]; }
   int target_of(NodeId node) const { return numbers_[node]; }  // -1 if the node is no target, or the end
@@ -36,8 +36,8 @@ class Targets {
   double total_prize() const { return total_prize_; }  // of all, the start and the end included
 
   // The nearest targets, and those it is nearest from, which are the same where edges lead both ways. Nearest first.
-  std::span<const int> near(int target) const { return list(near_, near_begin_, target); }
-  std::span<const int> into(int target) const { return symmetric() ? near(target) : list(into_, into_begin_, target); }
+  std::span<const int> near(int target) const { return near_[target]; }
+  std::span<const int> into(int target) const { return symmetric() ? near_[target] : into_[target]; }
 
   // From a target other than the end to another; kNoLimit where it is not known or no way exists.
   double cost(int from, int to) const {
@@ -49,29 +49,32 @@ class Targets {
   static constexpr int kMostSearched = 4096;  // more than worlds of 60x60 have: longer ways keep their upper bound
   double searched_cost(int from, int to, double most, NearestFirst& search) const;
 
-  // From a target other than the end to each, [T + 1]. REQUIRES: there is a table.
-  const double* row(int from) const { return table_.data() + static_cast<std::size_t>(from) * prizes_.size(); }
   bool has_table() const { return !table_.empty(); }
 
  private:
-  static std::span<const int> list(const std::vector<int>& lists, const std::vector<std::int64_t>& begin, int target) {
-    return {lists.data() + begin[target], lists.data() + begin[target + 1]};
-  }
+  struct Lists {                      // of targets
+    std::vector<int> targets;         // [T, at most kNearest]
+    std::vector<std::int64_t> begin;  // [T + 1]
+
+    std::span<const int> operator[](int target) const {
+      return {targets.data() + begin[target], targets.data() + begin[target + 1]};
+    }
+  };
+  // [T + 1], in the table.
+  const double* row(int from) const { return table_.data() + static_cast<std::size_t>(from) * prizes_.size(); }
+  double* row(int from) { return table_.data() + static_cast<std::size_t>(from) * prizes_.size(); }
   double near_cost(int from, int to) const;
-  void find_near(const Graph& graph, double limit, std::vector<int>& near, std::vector<std::int64_t>& begin,
-                 std::vector<double>* costs, const Clock& clock);
+  Lists find_near(const Graph& graph, double limit, bool with_costs, const Clock& clock);
 
   View view_;
-  std::vector<NodeId> nodes_;             // [T]
-  std::vector<int> numbers_;              // [N]
-  std::vector<double> prizes_;            // [T + 1]
-  std::vector<double> to_end_;            // [T]
-  std::vector<int> near_;                 // [T, at most kNearest]
-  std::vector<double> near_cost_;         // as near_; without a table only
-  std::vector<std::int64_t> near_begin_;  // [T + 1]
-  std::vector<int> into_;                 // likewise, of directed graphs
-  std::vector<std::int64_t> into_begin_;
-  std::vector<double> table_;  // [T, T + 1], or empty
+  std::vector<NodeId> nodes_;   // [T]
+  std::vector<int> numbers_;    // [N]
+  std::vector<double> prizes_;  // [T + 1]
+  std::vector<double> to_end_;  // [T]
+  Lists near_;
+  std::vector<double> near_cost_;  // as near_.targets; without a table only
+  Lists into_;                     // of directed graphs
+  std::vector<double> table_;      // [T, T + 1], or empty
   double total_prize_ = 0;
   bool complete_ = true;
 };

@@ -25,8 +25,8 @@ void VisitedSets::give_place(NodeId node) {
   free_.pop_back();
 }
 
-void VisitedSets::advance(std::span<const Child> children) {
-  for (const Child& child : children) give_place(child.node);
+void VisitedSets::advance(std::span<const Candidate> children) {
+  for (const Candidate& child : children) give_place(child.node);
   const std::size_t words = (node_at_.size() + 63) / 64;
   next_.assign(children.size() * words, 0);
   for (std::size_t i = 0; i < children.size(); ++i) {

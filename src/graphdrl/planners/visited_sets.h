@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "graphdrl/graph/node_set.h"
+#include "graphdrl/planners/best_states.h"
 
 namespace graphdrl {
 
@@ -17,13 +18,9 @@ class VisitedSets {
   // One walk, which has visited `start`.
   VisitedSets(NodeSet start, NodeId node_count) : common_(std::move(start)), place_(node_count, kNoPlace) {}
 
-  // A walk of the next level: one of this level, with one more node.
-  struct Child {
-    int parent;
-    NodeId node;
-  };
-  // Replaces the level by the next one. REQUIRES: there is a child; no parent has visited its child's node.
-  void advance(std::span<const Child> children);
+  // Replaces the level by the next one, of which each walk is one of this level with one more node.
+  // REQUIRES: there is a child; no parent has visited its child's node.
+  void advance(std::span<const Candidate> children);
 
   NodeSetView operator[](int walk) const { return {common_, place_.data(), rows_.data() + walk * words_}; }
 

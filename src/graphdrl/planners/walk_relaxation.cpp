@@ -1,23 +1,24 @@
 #include "graphdrl/planners/walk_relaxation.h"
 
 #include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <set>
+#include <utility>
 
-#include "graphdrl/graph/blocks.h"
+#include "graphdrl/graph/components.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr int kProbed = 8;            // columns to try branching on
-constexpr int kProbeIterations = 30;  // each way
-constexpr double kMostFall = 1e3;     // of a bound, in prizes: a part without walks counts as this
-constexpr double kLeastTrialFall =
-    1e-3;  // added to each of two falls, so that their product tells columns apart where one is 0
-constexpr double kViolation = 1e-4;  // less is not worth a row
-constexpr double kIntegral = 1e-5;   // what is as near to a whole number is one
+constexpr int kProbed = 8;                // columns to try branching on
+constexpr int kProbeIterations = 30;      // each way
+constexpr double kMostFall = 1e3;         // of a bound, in prizes: a part without walks counts as this
+constexpr double kLeastTrialFall = 1e-3;  // added to each of two falls: their product tells columns apart if one is 0
+constexpr double kViolation = 1e-4;       // less is not worth a row
+constexpr double kIntegral = 1e-5;        // what is as near to a whole number is one
 
 // The largest step of which all values are multiples, if they are multiples of a simple fraction; else 0.
 double common_step(const std::vector<double>& values) {
@@ -33,6 +34,11 @@ double common_step(const std::vector<double>& values) {
     if (whole) return static_cast<double>(step) / scale;
   }
   return 0;
+}
+
+// How far a part of 1 is from a whole number.
+double from_whole(double part) {
+  return std::min(part, 1 - part);
 }
 
 }  // namespace
@@ -58,23 +64,25 @@ WalkRelaxation::WalkRelaxation(const Task& task)
     at_[arcs_[arc].to].push_back(arc);
   }
   parent_.assign(nodes_.size(), -1);
-  const Blocks blocks(open, task.view().into(), task.start(), task.reach().contains);
+  const Blocks blocks(task.view().both_ways(), task.start(), task.reach().contains);
   for (int block = 0; block < blocks.count(); ++block) {
     if (blocks.root(block) == task.start()) continue;
     for (const NodeId member : blocks.members(block)) parent_[number[member]] = number[blocks.root(block)];
   }
-  place_.assign(nodes_.size(), -1);
+  std::vector<char> met(nodes_.size());
   std::vector<int> stack = {0};
-  for (int places = 0; !stack.empty();) {
+  while (!stack.empty()) {
     const int node = stack.back();
     stack.pop_back();
-    if (place_[node] >= 0) continue;
-    place_[node] = places++;
-    for (const int arc : at_[node]) stack.push_back(arcs_[arc].from + arcs_[arc].to - node);
+    if (std::exchange(met[node], 1) != 0) continue;
+    depth_first_.push_back(node);
+    for (const int arc : at_[node]) stack.push_back(arcs_[arc].other_end(node));
   }
   add_columns(task);
   add_rows(task);
-  add_links();
+  const int count = static_cast<int>(nodes_.size());
+  for (const Arc& arc : arcs_) network_.add_arc(arc.to, arc.from, 0);
+  for (int node = 0; node < count; ++node) to_start_.push_back(network_.add_arc(node, count, 0));
 }
 
 void WalkRelaxation::add_columns(const Task& task) {
@@ -104,7 +112,7 @@ std::vector<bool> WalkRelaxation::odd_ends(double step, double budget) const {
   for (std::size_t head = 0; head < queue.size(); ++head) {
     const int node = queue[head];
     for (const int i : at_[node]) {
-      const int next = arcs_[i].from + arcs_[i].to - node;
+      const int next = arcs_[i].other_end(node);
       const int other = static_cast<int>((colour[node] + std::llround(arcs_[i].cost / step)) % 2);
       if (colour[next] < 0) {
         colour[next] = other;
@@ -130,13 +138,11 @@ void WalkRelaxation::add_rows(const Task& task) {
   if (step > 0) {
     const std::vector<bool> odd = odd_ends(step, cost.upper);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (odd[i] && end_[i] >= 0) cost.add(end_[i], 1);
+      if (odd[i]) cost.add(end_[i], 1);
     }
   }
   LinearProgram::Row& ends = rows.emplace_back(LinearProgram::Row{.lower = 1, .upper = 1});
-  for (const int end : end_) {
-    if (end >= 0) ends.add(end, 1);
-  }
+  for (const int end : end_) ends.add(end, 1);
   for (int i = 0; i < std::ssize(nodes_); ++i) {
     LinearProgram::Row arrivals{.lower = 0};
     LinearProgram::Row balance{.lower = i == 0 ? -1.0 : 0.0, .upper = i == 0 ? -1.0 : 0.0};
@@ -144,7 +150,7 @@ void WalkRelaxation::add_rows(const Task& task) {
       if (!directed_ || arcs_[arc].to == i) add_uses(arrivals, arcs_[arc], 1);
       if (directed_) add_uses(balance, arcs_[arc], arcs_[arc].to == i ? 1 : -1);
     }
-    if (end_[i] >= 0) (directed_ ? balance : arrivals).add(end_[i], directed_ ? -1 : 1);
+    (directed_ ? balance : arrivals).add(end_[i], directed_ ? -1 : 1);
     if (directed_) rows.push_back(std::move(balance));
     if (i == 0) continue;
     arrivals.add(visit_[i], directed_ ? -1 : -2);
@@ -154,21 +160,12 @@ void WalkRelaxation::add_rows(const Task& task) {
   fixed_rows_ = program_.rows();
 }
 
-double WalkRelaxation::uses(const Arc& arc) const {
-  return value(arc.once) + 2 * value(arc.twice);
-}
-
-void WalkRelaxation::add_uses(LinearProgram::Row& row, const Arc& arc, double factor) const {
-  row.add(arc.once, factor);
-  if (arc.twice >= 0) row.add(arc.twice, 2 * factor);
-}
-
 // Adds factor · z(S), S being the nodes for which `inside` says so; with fewer columns as factor · (1 - z(V \ S)).
 void WalkRelaxation::add_ends(LinearProgram::Row& row, double factor, const std::vector<char>& inside) const {
   const auto count = std::count_if(inside.begin(), inside.end(), [](char in) { return in != 0; });
   const bool direct = 2 * count <= std::ssize(inside);
   for (std::size_t i = 0; i < inside.size(); ++i) {
-    if (end_[i] >= 0 && (inside[i] != 0) == direct) row.add(end_[i], direct ? factor : -factor);
+    if ((inside[i] != 0) == direct) row.add(end_[i], direct ? factor : -factor);
   }
   if (direct) return;
   row.lower -= factor;
@@ -200,31 +197,23 @@ void WalkRelaxation::separate_simple() {
   }
   if (directed_) return;
   for (const Arc& arc : arcs_) {
-    const double used = value(arc.once) + value(arc.twice);
-    for (const int node : {arc.from, arc.to}) at_most(used, {arc.once, arc.twice}, visit_[node]);
+    for (const int node : {arc.from, arc.to}) at_most(taken(arc), {arc.once, arc.twice}, visit_[node]);
   }
 }
 
-// Of the edges for which `joins` says so. [n]
+// Of the edges for which `joins` says so, in the order of their first nodes. [n]
 std::vector<int> WalkRelaxation::components(const std::function<bool(const Arc&)>& joins) const {
-  std::vector<int> component(nodes_.size(), -1);
-  std::vector<int> queue;
+  boost::disjoint_sets_with_storage<> sets(nodes_.size());
+  for (const Arc& arc : arcs_) {
+    if (joins(arc)) sets.union_set(arc.from, arc.to);
+  }
+  std::vector<int> number(nodes_.size(), -1);  // by a set's representative
+  std::vector<int> component;
   int count = 0;
-  for (int root = 0; root < std::ssize(nodes_); ++root) {
-    if (component[root] >= 0) continue;
-    component[root] = count;
-    queue.assign(1, root);
-    while (!queue.empty()) {
-      const int node = queue.back();
-      queue.pop_back();
-      for (const int i : at_[node]) {
-        const int next = arcs_[i].from + arcs_[i].to - node;
-        if (component[next] >= 0 || !joins(arcs_[i])) continue;
-        component[next] = count;
-        queue.push_back(next);
-      }
-    }
-    ++count;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    int& of_set = number[sets.find_set(i)];
+    if (of_set < 0) of_set = count++;
+    component.push_back(of_set);
   }
   return component;
 }
@@ -235,7 +224,7 @@ std::vector<int> WalkRelaxation::components(const std::function<bool(const Arc&)
 void WalkRelaxation::separate_partitions() {
   std::set<std::vector<int>> tried;
   for (const double least : {2.0, 0.99, 0.9, 0.75, 0.6, 0.4}) {
-    std::vector<int> component = components([&](const Arc& arc) { return value(arc.once) + value(arc.twice) > least; });
+    const std::vector<int> component = components([&](const Arc& arc) { return taken(arc) > least; });
     if (tried.insert(component).second) separate_partition(component);
   }
 }
@@ -260,7 +249,7 @@ void WalkRelaxation::separate_partition(const std::vector<int>& component) {
     worth += value(visit_[worth_most[part]]);
   }
   for (int i = 0; i < std::ssize(across); ++i) {
-    choice.add_arc(parts + i, source + 1, value(across[i]->once) + value(across[i]->twice));
+    choice.add_arc(parts + i, source + 1, taken(*across[i]));
     for (const int node : {across[i]->from, across[i]->to}) {
       if (component[node] != component[0]) choice.add_arc(component[node], parts + i, kNoLimit);
     }
@@ -286,10 +275,8 @@ void WalkRelaxation::separate_partition(const std::vector<int>& component) {
 void WalkRelaxation::separate_parity(const Clock& clock) {
   std::set<std::vector<int>> tried;
   for (const double fraction : {1.0, 0.01, 0.1, 0.2, 0.3, 0.4}) {
-    std::vector<int> component = components([&](const Arc& arc) {
-      const double once = value(arc.once);
-      return std::min(once, 1 - once) > fraction;
-    });
+    const std::vector<int> component =
+        components([&](const Arc& arc) { return from_whole(value(arc.once)) > fraction; });
     if (tried.insert(component).second) separate_parity_of(component);
   }
   if (found_.empty()) separate_parity_cuts(clock);
@@ -302,23 +289,17 @@ void WalkRelaxation::separate_parity_cuts(const Clock& clock) {
   const int count = static_cast<int>(nodes_.size());
   MaxFlow distances(count);
   const auto add = [&](int one, int other, double part) {
-    const double distance = std::min(part, 1 - part);
-    if (distance > kViolation) distances.add_arc(one, other, distance, distance);
+    if (from_whole(part) > kViolation) distances.add_arc(one, other, from_whole(part), from_whole(part));
   };
   for (const Arc& arc : arcs_) add(arc.from, arc.to, value(arc.once));
   for (int i = 1; i < count; ++i) add(i, 0, value(end_[i]));
-  const std::vector<int> part = components([&](const Arc& arc) {
-    const double once = value(arc.once);
-    return std::min(once, 1 - once) > kViolation;
-  });
-  std::vector<int> first(1 + *std::max_element(part.begin(), part.end()), -1);
+  const std::vector<int> part = components([&](const Arc& arc) { return from_whole(value(arc.once)) > kViolation; });
+  std::vector<int> first(count, -1);
   std::vector<int> toward(count, -1);
   for (int i = 0; i < count; ++i) {
-    if (first[part[i]] < 0) {
-      first[part[i]] = i;
-    } else {
-      toward[i] = first[part[i]];
-    }
+    int& root = first[part[i]];
+    if (root >= 0) toward[i] = root;
+    if (root < 0) root = i;
   }
   for (int i = 0; i < count; ++i) {
     if (toward[i] < 0) continue;
@@ -344,7 +325,7 @@ void WalkRelaxation::separate_parity_of(const std::vector<int>& component) {
     double end = 0;
 
     void add(double part) {
-      distance += std::min(part, 1 - part);
+      distance += from_whole(part);
       flip = std::min(flip, std::abs(1 - 2 * part));
       odd = odd != (part > 0.5);
     }
@@ -367,6 +348,8 @@ void WalkRelaxation::add_parity_row(const std::vector<int>& component, int which
   struct Term {
     int column;  // -1 for z(S)
     double value;
+    bool in_f;
+    double flip() const { return std::abs(1 - 2 * value); }
   };
   std::vector<char> inside(nodes_.size());
   double end = 0;
@@ -375,37 +358,22 @@ void WalkRelaxation::add_parity_row(const std::vector<int>& component, int which
     inside[i] = static_cast<char>((component[i] == which) != turned);
     if (inside[i] != 0) end += value(end_[i]);
   }
-  std::vector<Term> terms = {{-1, end}};
+  std::vector<Term> terms = {{-1, end, end > 0.5}};
   for (const Arc& arc : arcs_) {
-    if (inside[arc.from] != inside[arc.to]) terms.push_back({arc.once, value(arc.once)});
+    if (inside[arc.from] != inside[arc.to]) terms.push_back({arc.once, value(arc.once), value(arc.once) > 0.5});
   }
-  std::vector<char> in_f;
-  int odd = 0;
-  std::size_t flipped = 0;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    in_f.push_back(static_cast<char>(terms[i].value > 0.5));
-    odd ^= in_f.back();
-    if (std::abs(1 - 2 * terms[i].value) < std::abs(1 - 2 * terms[flipped].value)) flipped = i;
+  auto size = std::count_if(terms.begin(), terms.end(), [](const Term& term) { return term.in_f; });  // |F|
+  if (size % 2 == 0) {
+    const auto by_flip = [](const Term& a, const Term& b) { return a.flip() < b.flip(); };
+    Term& flipped = *std::min_element(terms.begin(), terms.end(), by_flip);
+    flipped.in_f = !flipped.in_f;
+    size += flipped.in_f ? 1 : -1;
   }
-  if (odd == 0) in_f[flipped] = static_cast<char>(1 - in_f[flipped]);
   // Sum of (1 - value) over F and of value over the others >= 1.
   LinearProgram::Row& row = found_.emplace_back();
-  row.lower = 1 - static_cast<double>(std::count(in_f.begin(), in_f.end(), 1));
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    const double factor = in_f[i] != 0 ? -1 : 1;
-    if (terms[i].column < 0) {
-      add_ends(row, factor, inside);
-    } else {
-      row.add(terms[i].column, factor);
-    }
-  }
-}
-
-// Builds the network in which flow goes from a node back to the start, which is node n. An end is an arc to the start.
-void WalkRelaxation::add_links() {
-  const int count = static_cast<int>(nodes_.size());
-  for (const Arc& arc : arcs_) network_.add_arc(arc.to, arc.from, 0);
-  for (int node = 0; node < count; ++node) to_start_.push_back(network_.add_arc(node, count, 0));
+  row.lower = 1 - static_cast<double>(size);
+  add_ends(row, terms[0].in_f ? -1 : 1, inside);
+  for (const Term& term : terms) row.add(term.column, term.in_f ? -1 : 1);
 }
 
 // Checks nodes in descending order of y. A node found connected well enough is in no violated S of a later one: it
@@ -465,23 +433,22 @@ WalkRelaxation::Branches WalkRelaxation::branches() {
 // The walk ends in one half of the nodes or in the other. Empty where the ends are integral. Cuts the nodes, in their
 // depth-first order, where the halves' sums of z are most equal.
 WalkRelaxation::Branches WalkRelaxation::halve_ends() const {
-  std::vector<int> ends;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (end_[i] >= 0 && program_.upper(end_[i]) > 0) ends.push_back(static_cast<int>(i));
+  std::vector<int> ends;  // columns
+  for (const int node : depth_first_) {
+    if (end_[node] >= 0 && program_.upper(end_[node]) > 0) ends.push_back(end_[node]);
   }
-  std::sort(ends.begin(), ends.end(), [&](int one, int other) { return place_[one] < place_[other]; });
   double sum = 0;
   double best = kIntegral;
   std::size_t split = 0;
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    sum += value(end_[ends[i]]);
+    sum += value(ends[i]);
     if (std::min(sum, 1 - sum) <= best) continue;
     best = std::min(sum, 1 - sum);
     split = i + 1;
   }
   Branches result;
   for (std::size_t i = 0; split > 0 && i < ends.size(); ++i) {
-    (i < split ? result.second : result.first).push_back({end_[ends[i]], 0, 0});
+    (i < split ? result.second : result.first).push_back({ends[i], 0, 0});
   }
   return result;
 }
@@ -496,7 +463,7 @@ std::vector<int> WalkRelaxation::least_integral_columns() const {
   for (const int column : visit_) add(column);
   for (const Arc& arc : arcs_) {
     add(arc.once);
-    if (arc.twice >= 0) add(arc.twice);
+    add(arc.twice);
   }
   std::stable_sort(columns.begin(), columns.end(), [&](int one, int other) { return fraction(one) > fraction(other); });
   if (std::ssize(columns) > kProbed) columns.resize(kProbed);
@@ -549,7 +516,7 @@ std::vector<NodeId> WalkRelaxation::walk() const {
     }
     const Arc& arc = arcs_[at_[node][i]];
     --left[at_[node][i]];
-    stack.push_back(arc.from + arc.to - node);
+    stack.push_back(arc.other_end(node));
   }
   std::reverse(walk.begin(), walk.end());
   return walk;

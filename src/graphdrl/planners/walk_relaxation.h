@@ -70,18 +70,22 @@ class WalkRelaxation {
     double cost;
     int once;   // column; of a directed graph how often
     int twice;  // column; -1 in a directed graph
+    int other_end(int node) const { return from + to - node; }
   };
   void add_columns(const Task& task);
   void add_rows(const Task& task);
   std::vector<bool> odd_ends(double step, double budget) const;
-  void add_links();
   Branches halve_ends() const;
   std::vector<int> least_integral_columns() const;
   Branches split_a_column();
 
   double value(int column) const { return column < 0 ? 0 : program_.values()[column]; }
-  double uses(const Arc& arc) const;
-  void add_uses(LinearProgram::Row& row, const Arc& arc, double factor) const;
+  double uses(const Arc& arc) const { return value(arc.once) + 2 * value(arc.twice); }
+  double taken(const Arc& arc) const { return value(arc.once) + value(arc.twice); }  // whether used at all
+  static void add_uses(LinearProgram::Row& row, const Arc& arc, double factor) {
+    row.add(arc.once, factor);
+    row.add(arc.twice, 2 * factor);
+  }
   void add_ends(LinearProgram::Row& row, double factor, const std::vector<char>& inside) const;
 
   void separate_simple();
@@ -101,15 +105,15 @@ class WalkRelaxation {
   bool directed_;
   double prize_step_ = 0;
   int fixed_rows_ = 0;
-  std::vector<NodeId> nodes_;  // [n], the start first
-  std::vector<int> visit_;     // [n], columns
-  std::vector<int> end_;       // [n], columns; -1 where no walk ends
-  std::vector<int> place_;     // [n], in a depth-first order: what is near stands together
-  std::vector<int> parent_;    // [n], the root of its block; -1 for the start
+  std::vector<NodeId> nodes_;     // [n], the start first
+  std::vector<int> visit_;        // [n], columns
+  std::vector<int> end_;          // [n], columns; -1 where no walk ends
+  std::vector<int> depth_first_;  // [n], nodes: what is near stands together
+  std::vector<int> parent_;       // [n], the root of its block; -1 for the start
   std::vector<Arc> arcs_;
   std::vector<std::vector<int>> at_;  // [n], arcs
   std::vector<LinearProgram::Row> found_;
-  MaxFlow network_;
+  MaxFlow network_;            // flow goes from a node back to the start, which is node n; an end is an arc to it
   std::int64_t scanned_ = 0;   // arcs of all flows
   std::vector<int> to_start_;  // [n], its arcs
 };

@@ -23,41 +23,36 @@ constexpr Colour kLine = {0x00, 0x72, 0xb2};
 constexpr Colour kBand = {0xc5, 0xdf, 0xee};
 
 // Where a panel's curves are drawn.
-class Axes {
- public:
-  Axes(Point corner, double last, double low, double high) : corner_(corner), last_(last), low_(low), high_(high) {}
+struct Axes {
+  Point corner;
+  double last;  // of x, which begins at 0
+  double low;   // of y
+  double high;
 
   Point at(Point value) const {
-    const double height = (std::clamp(value.y, low_, high_) - low_) / (high_ - low_);
-    return {corner_.x + kWidth * value.x / last_, corner_.y + kHeight * (1 - height)};
+    const double height = (std::clamp(value.y, low, high) - low) / (high - low);
+    return {corner.x + kWidth * value.x / last, corner.y + kHeight * (1 - height)};
   }
 
   std::vector<Point> at(const std::vector<Point>& values) const {
     std::vector<Point> points;
-    points.reserve(values.size());
     for (const Point value : values) points.push_back(at(value));
     return points;
   }
 
   void draw(Canvas& canvas, const std::string& title, const std::string& x_title) const {
-    canvas.text({corner_.x, corner_.y - 10}, title, kLabelSize + 1, kDark, Anchor::kStart);
-    for (const double tick : axis_ticks(low_, high_)) {
+    canvas.text({corner.x, corner.y - 10}, title, kLabelSize + 1, kDark, Anchor::kStart);
+    for (const double tick : axis_ticks(low, high)) {
       const double y = at({0, tick}).y;
-      canvas.segments(std::vector<Segment>{{{corner_.x, y}, {corner_.x + kWidth, y}}}, kRule, 1);
-      canvas.text({corner_.x - 6, y + 4}, fmt::format("{:g}", tick), kLabelSize, kDark, Anchor::kEnd);
+      canvas.segments(std::vector<Segment>{{{corner.x, y}, {corner.x + kWidth, y}}}, kRule, 1);
+      canvas.text({corner.x - 6, y + 4}, fmt::format("{:g}", tick), kLabelSize, kDark, Anchor::kEnd);
     }
-    for (const double tick : axis_ticks(0, last_)) {
-      const double x = at({tick, low_}).x;
-      canvas.text({x, corner_.y + kHeight + 16}, fmt::format("{:g}", tick), kLabelSize, kDark, Anchor::kMiddle);
+    for (const double tick : axis_ticks(0, last)) {
+      const double x = at({tick, low}).x;
+      canvas.text({x, corner.y + kHeight + 16}, fmt::format("{:g}", tick), kLabelSize, kDark, Anchor::kMiddle);
     }
-    canvas.text({corner_.x + kWidth / 2, corner_.y + kHeight + 30}, x_title, kLabelSize, kDark, Anchor::kMiddle);
+    canvas.text({corner.x + kWidth / 2, corner.y + kHeight + 30}, x_title, kLabelSize, kDark, Anchor::kMiddle);
   }
-
- private:
-  Point corner_;
-  double last_;
-  double low_;
-  double high_;
 };
 
 Axes axes_of(const CurvePanel& panel, Point corner) {

@@ -7,17 +7,14 @@
 #include <chrono>
 
 #include "event.pb.h"
-#include "graphdrl/base/error.h"
 
 namespace graphdrl {
 namespace {
 
-using Crc32c = boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true>;
-
 // TFRecord's checksum: CRC-32C, rotated and offset, so that a checksum of checksums stays sound.
-std::uint32_t masked_crc(const void* data, std::size_t size) {
-  Crc32c crc;
-  crc.process_bytes(data, size);
+std::uint32_t masked_crc(std::string_view data) {
+  boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, true> crc;
+  crc.process_bytes(data.data(), data.size());
   const std::uint32_t value = crc.checksum();
   return ((value >> 15) | (value << 17)) + 0xa282ead8U;
 }
@@ -40,8 +37,7 @@ std::filesystem::path fresh_path(const std::filesystem::path& folder) {
 
 }  // namespace
 
-EventWriter::EventWriter(const std::filesystem::path& folder, std::int64_t first_step)
-    : path_(fresh_path(folder)), file_(path_, std::ios::binary) {
+EventWriter::EventWriter(const std::filesystem::path& folder, std::int64_t first_step) : file_(fresh_path(folder)) {
   tensorboard::Event version;
   version.set_wall_time(now_s());
   version.set_file_version("brain.Event:2");
@@ -66,14 +62,16 @@ void EventWriter::write(std::int64_t step, std::span<const Scalar> scalars) {
 }
 
 void EventWriter::write_record(const std::string& record) {
+  const auto bytes_of = [](const auto& number) {
+    return std::string_view(reinterpret_cast<const char*>(&number), sizeof number);
+  };
   const std::uint64_t length = record.size();
-  const std::uint32_t length_crc = masked_crc(&length, sizeof length);
-  const std::uint32_t record_crc = masked_crc(record.data(), record.size());
-  file_.write(reinterpret_cast<const char*>(&length), sizeof length);
-  file_.write(reinterpret_cast<const char*>(&length_crc), sizeof length_crc);
-  file_.write(record.data(), static_cast<std::streamsize>(record.size()));
-  file_.write(reinterpret_cast<const char*>(&record_crc), sizeof record_crc);
-  if (!file_.flush()) throw Error({.what = "cannot write the event file", .where = path_.string()});
+  const std::uint32_t length_crc = masked_crc(bytes_of(length));
+  const std::uint32_t record_crc = masked_crc(record);
+  std::string framed(bytes_of(length));
+  framed += bytes_of(length_crc);
+  framed += record;
+  file_.append(framed += bytes_of(record_crc));
 }
 
 }  // namespace graphdrl

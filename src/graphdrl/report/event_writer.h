@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
+
+#include "graphdrl/io/file.h"
 
 namespace graphdrl {
 
@@ -14,7 +15,8 @@ struct Scalar {
   double value;
 };
 
-// Appends to a new file events.out.tfevents.* in a folder. Every record is flushed, so that TensorBoard can follow.
+// Appends to a new file events.out.tfevents.* in a folder. Every record is written at once, so that TensorBoard can
+// follow.
 class EventWriter {
  public:
   // `first_step`: TensorBoard drops all steps from this one on that earlier files of the folder hold, so that a resumed
@@ -22,12 +24,12 @@ class EventWriter {
   EventWriter(const std::filesystem::path& folder, std::int64_t first_step);
 
   void write(std::int64_t step, std::span<const Scalar> scalars);
+  void sync() { file_.sync(); }
 
  private:
   void write_record(const std::string& record);
 
-  std::filesystem::path path_;
-  std::ofstream file_;
+  AppendedFile file_;
 };
 
 }  // namespace graphdrl

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "graphdrl/base/random.h"
+#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 namespace {
@@ -23,22 +24,8 @@ struct Pair {
   double distance;  // wanted
 };
 
-// Distances in edges from a node; -1 for nodes that it has no way to.
-std::vector<int> hops_from(const Graph& graph, NodeId source) {
-  std::vector<int> hops(graph.node_count(), -1);
-  std::vector<NodeId> queue = {source};
-  hops[source] = 0;
-  for (std::size_t head = 0; head < queue.size(); ++head) {
-    for (const NodeId next : graph.neighbours(queue[head])) {
-      if (hops[next] >= 0) continue;
-      hops[next] = hops[queue[head]] + 1;
-      queue.push_back(next);
-    }
-  }
-  return hops;
-}
-
-// Nodes without a way between them lie a little farther apart than any that have one.
+// Distances in edges; every edge costs 1. Nodes without a way between them lie a little farther apart than any that
+// have one.
 std::vector<Pair> pairs_of(const Graph& graph) {
   const NodeId count = graph.node_count();
   const bool all = count <= kMostByAllPairs;
@@ -48,11 +35,17 @@ std::vector<Pair> pairs_of(const Graph& graph) {
     for (const Edge& edge : graph.edges()) pairs.push_back({edge.a, edge.b, 1});
   }
   std::vector<int> nearest(count, std::numeric_limits<int>::max());  // hops from any source before
+  NearestFirst search;
   NodeId source = 0;
   int most = 1;
   for (NodeId i = 0; i < (all ? count : pivots); ++i) {
     if (all) source = i;
-    const std::vector<int> hops = hops_from(graph, source);
+    std::vector<int> hops(count, -1);  // from the source; -1 where no way leads
+    hops[source] = 0;
+    search.run(graph, source, kNoLimit, [&](NodeId node, double cost) {
+      hops[node] = static_cast<int>(cost);
+      return NearestFirst::Next::kThrough;
+    });
     most = std::max(most, *std::max_element(hops.begin(), hops.end()));
     for (NodeId node = all ? i + 1 : 0; node < count; ++node) {
       if (node != source) pairs.push_back({source, node, static_cast<double>(hops[node])});
@@ -120,6 +113,15 @@ std::vector<Point> lay_out(const Graph& graph) {
   const auto rounded = [](double value) { return std::round(1000 * value) / 1000; };
   for (Point& point : points) point = {rounded(point.x), rounded(point.y)};
   return points;
+}
+
+Box box_of(std::span<const Point> points) {
+  Box box;
+  for (const Point& point : points) {
+    box = {std::min(box.left, point.x), std::min(box.bottom, point.y), std::max(box.right, point.x),
+           std::max(box.top, point.y)};
+  }
+  return box;
 }
 
 std::vector<Point> places_of(const World& world) {

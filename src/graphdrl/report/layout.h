@@ -1,9 +1,11 @@
 // Where to draw the nodes of a graph.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "graphdrl/env/world.h"
+#include "graphdrl/graph/search.h"
 
 namespace graphdrl {
 
@@ -15,5 +17,11 @@ std::vector<Point> lay_out(const Graph& graph);
 
 // The nodes' own places; those of lay_out() in a world without coordinates.
 std::vector<Point> places_of(const World& world);
+
+// Around points, however many.
+struct Box {
+  double left = kNoLimit, bottom = kNoLimit, right = -kNoLimit, top = -kNoLimit;
+};
+Box box_of(std::span<const Point> points);
 
 }  // namespace graphdrl

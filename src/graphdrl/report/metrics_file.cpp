@@ -5,15 +5,19 @@
 #include <sstream>
 #include <string>
 
-#include "graphdrl/base/error.h"
-#include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
 
-// The whole lines of the file up to a count.
-std::string lines_until(const std::filesystem::path& path, const std::string& counter, std::int64_t done) {
+AppendedFile rewritten(const std::filesystem::path& path, const std::string& content) {
+  write_file(path, content);
+  return AppendedFile(path);
+}
+
+}  // namespace
+
+std::string metrics_until(const std::filesystem::path& path, const std::string& counter, std::int64_t done) {
   std::string kept;
   if (!std::filesystem::exists(path)) return kept;
   std::istringstream content(read_file(path));
@@ -26,13 +30,8 @@ std::string lines_until(const std::filesystem::path& path, const std::string& co
   return kept;
 }
 
-}  // namespace
-
-MetricsFile::MetricsFile(const std::filesystem::path& path, std::string counter, std::int64_t done)
-    : path_(path), counter_(std::move(counter)) {
-  write_file(path, lines_until(path, counter_, done));
-  file_.open(path, std::ios::binary | std::ios::app);
-}
+MetricsFile::MetricsFile(const std::filesystem::path& path, std::string counter, std::string lines)
+    : counter_(std::move(counter)), lines_(std::move(lines)), file_(rewritten(path, lines_)) {}
 
 void MetricsFile::write(std::int64_t count, std::span<const Scalar> scalars) {
   nlohmann::ordered_json json;
@@ -40,8 +39,9 @@ void MetricsFile::write(std::int64_t count, std::span<const Scalar> scalars) {
   for (const Scalar& scalar : scalars) {
     json[scalar.tag] = std::isnan(scalar.value) ? nlohmann::ordered_json() : nlohmann::ordered_json(scalar.value);
   }
-  file_ << json.dump() << '\n';
-  if (!file_.flush()) throw Error({.what = "cannot write the metrics", .where = path_.string()});
+  const std::string line = json.dump() + '\n';
+  file_.append(line);
+  lines_ += line;
 }
 
 }  // namespace graphdrl

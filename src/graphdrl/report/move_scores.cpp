@@ -2,25 +2,25 @@
 
 #include <array>
 
-#include "graphdrl/env/walk.h"
+#include "graphdrl/env/episode.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
 namespace {
 
-void follow(const Answer& report, const std::function<void(const Observation&)>& at_node) {
-  Episode episode(report.world, report.task, {.action_space = action_space_of(report.world)});
-  follow_walk(episode, report.plan.walk, at_node);
+void follow(const Answer& answer, const std::function<void(const Observation&)>& at_node) {
+  Episode episode(answer.world, answer.task, {.action_space = action_space_of(answer.world)});
+  follow_walk(episode, answer.plan.walk, at_node);
 }
 
-MoveScores shortfalls_along(const Answer& report, SharedExplorer explorer) {
+MoveScores shortfalls_along(const Answer& answer, SharedExplorer explorer) {
   MoveScores scores{.name = "expected shortfall", .lower_is_better = true, .steps = {}};
   ExplorerScorer scorer(std::move(explorer));
-  NodeSet ground(report.world.node_count());
+  NodeSet ground(answer.world.node_count());
   ExplorerScratch scratch;
   std::vector<float> shortfall;
-  follow(report, [&](const Observation& observation) {
+  follow(answer, [&](const Observation& observation) {
     ground.insert(observation.position);
     ExplorerBatch batch;
     const auto visits = encode(Exploration(observation, ground), scratch, batch).visits;
@@ -32,9 +32,9 @@ MoveScores shortfalls_along(const Answer& report, SharedExplorer explorer) {
   return scores;
 }
 
-MoveScores q_values_along(const Answer& report, PaperPolicy policy) {
+MoveScores q_values_along(const Answer& answer, PaperPolicy policy) {
   MoveScores scores{.name = "Q-value", .steps = {}};
-  follow(report, [&](const Observation& observation) {
+  follow(answer, [&](const Observation& observation) {
     std::array<float, kActionCount> q = {};
     policy.q_values({&observation, 1}, q);
     std::vector<MoveScore>& moves = scores.steps.emplace_back();
@@ -47,10 +47,10 @@ MoveScores q_values_along(const Answer& report, PaperPolicy policy) {
 
 }  // namespace
 
-MoveScores scores_along(const Answer& report, const std::string& policy) {
+MoveScores scores_along(const Answer& answer, const std::string& policy) {
   TrainedPolicy trained = read_policy(policy);
-  if (auto* const explorer = std::get_if<SharedExplorer>(&trained)) return shortfalls_along(report, *explorer);
-  return q_values_along(report, PaperPolicy(std::get<PaperParameters>(std::move(trained))));
+  if (auto* const explorer = std::get_if<SharedExplorer>(&trained)) return shortfalls_along(answer, *explorer);
+  return q_values_along(answer, PaperPolicy(std::get<PaperParameters>(std::move(trained))));
 }
 
 }  // namespace graphdrl

@@ -23,6 +23,6 @@ struct MoveScores {
 // The scores along a plan's walk. policy: explorer, or the file of an explorer or of a network of the paper. An
 // explorer scores first visits by their shortfall [planners/explorer.h]; a network of the paper scores the neighbouring
 // cells by their Q-values. Throws Error if the policy cannot be read or does not work in this world.
-MoveScores scores_along(const Answer& report, const std::string& policy);
+MoveScores scores_along(const Answer& answer, const std::string& policy);
 
 }  // namespace graphdrl

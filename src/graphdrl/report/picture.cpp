@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include "graphdrl/report/layout.h"
-#include "graphdrl/report/map_drawing.h"
 
 namespace graphdrl {
 namespace {
@@ -44,7 +42,23 @@ constexpr Colour kBlocked = {74, 81, 92};
 constexpr Colour kMissed = {250, 190, 140};
 constexpr Colour kMissedLine = {178, 84, 12};
 
+// Points in a direction. spread: of its back corners, from there.
+std::array<Point, 3> triangle(Point centre, double angle, double length, double spread) {
+  const auto corner = [&](double turn) {
+    return Point{centre.x + length * std::cos(angle + turn), centre.y + length * std::sin(angle + turn)};
+  };
+  return {corner(0), corner(spread), corner(-spread)};
+}
+
 }  // namespace
+
+std::vector<int> first_visits(const World& world, std::span<const NodeId> walk) {
+  std::vector<int> steps(world.node_count(), -1);
+  for (std::size_t step = 0; step < walk.size(); ++step) {
+    if (steps[walk[step]] < 0) steps[walk[step]] = static_cast<int>(step);
+  }
+  return steps;
+}
 
 Picture::Picture(const World& world, std::span<const NodeId> walk, std::string title, std::vector<std::string> notes)
     : world_(world),
@@ -76,16 +90,7 @@ void Picture::place_cells() {
 
 void Picture::place_nodes() {
   const std::vector<Point> points = places_of(world_);
-  double left = std::numeric_limits<double>::infinity();
-  double bottom = left;
-  double right = -left;
-  double top = -left;
-  for (const Point& point : points) {
-    left = std::min(left, point.x);
-    right = std::max(right, point.x);
-    bottom = std::min(bottom, point.y);
-    top = std::max(top, point.y);
-  }
+  const auto [left, bottom, right, top] = box_of(points);
   // Away from the equator degrees of longitude are shorter than those of latitude.
   const bool degrees = world_.unit() == "degrees";
   const double stretch = degrees ? std::max(0.05, std::cos((bottom + top) / 2 * std::numbers::pi / 180)) : 1;
@@ -116,23 +121,22 @@ std::string Picture::description() const {
   return text;
 }
 
+std::string Picture::drawn_on(Canvas& canvas) const {
+  draw(canvas);
+  return canvas.finish();
+}
+
 std::string Picture::svg() const {
-  const auto canvas = make_svg_canvas(width_, height(), title_, description());
-  draw(*canvas);
-  return canvas->finish();
+  return drawn_on(*make_svg_canvas(width_, height(), title_, description()));
 }
 
 std::string Picture::moving_svg() const {
   const double steps = static_cast<double>(std::min(walk_.size(), kMostMovingSteps));
-  const auto canvas = make_svg_canvas(width_, height(), title_, description(), std::clamp(0.12 * steps, 4.0, 24.0));
-  draw(*canvas);
-  return canvas->finish();
+  return drawn_on(*make_svg_canvas(width_, height(), title_, description(), std::clamp(0.12 * steps, 4.0, 24.0)));
 }
 
 std::string Picture::png() const {
-  const auto canvas = make_png_canvas(width_, height());
-  draw(*canvas);
-  return canvas->finish();
+  return drawn_on(*make_png_canvas(width_, height()));
 }
 
 Bitmap Picture::pixels() const {
@@ -194,12 +198,7 @@ void Picture::draw_edges(Canvas& canvas) const {
     // In the middle, where they do not meet.
     const Point middle{(segment.from.x + 2 * segment.to.x) / 3, (segment.from.y + 2 * segment.to.y) / 3};
     const double angle = std::atan2(segment.to.y - segment.from.y, segment.to.x - segment.from.x);
-    std::array<Point, 3> corners{};
-    for (int i = 0; i < 3; ++i) {
-      const double turn = angle + (i == 0 ? 0 : i == 1 ? 2.6 : -2.6);
-      corners[i] = {middle.x + 5 * std::cos(turn), middle.y + 5 * std::sin(turn)};
-    }
-    canvas.polygon(corners, kEdge);
+    canvas.polygon(triangle(middle, angle, 5, 2.6), kEdge);
   }
 }
 
@@ -273,16 +272,8 @@ void Picture::draw_walk(Canvas& canvas) const {
 void Picture::draw_arrow_head(Canvas& canvas, Point from, Point to) const {
   const double angle = std::atan2(to.y - from.y, to.x - from.x);
   const double size = std::clamp(spacing_ / 4, 6.0, 11.0);
-  const auto triangle = [&](double length) {
-    std::array<Point, 3> corners{};
-    for (int i = 0; i < 3; ++i) {
-      const double turn = angle + (i == 0 ? 0 : i == 1 ? 2.5 : -2.5);
-      corners[i] = {to.x + length * std::cos(turn), to.y + length * std::sin(turn)};
-    }
-    return corners;
-  };
-  canvas.polygon(triangle(size + 2.5), kInk);
-  canvas.polygon(triangle(size), colour_at(walk_.size() - 1));
+  canvas.polygon(triangle(to, angle, size + 2.5, 2.5), kInk);
+  canvas.polygon(triangle(to, angle, size, 2.5), colour_at(walk_.size() - 1));
 }
 
 void Picture::draw_legend(Canvas& canvas) const {
@@ -291,6 +282,11 @@ void Picture::draw_legend(Canvas& canvas) const {
   const auto say = [&](const std::string& text) {
     canvas.text({x, y}, text, kTextSize - 1, kQuiet, Anchor::kStart);
     x += 6.6 * static_cast<double>(text.size()) + 16;
+  };
+  const auto explain = [&](Colour colour, const std::string& meaning) {
+    canvas.rectangle({x, y - 9}, 10, 10, colour);
+    x += 16;
+    say(meaning);
   };
   if (!walk_.empty()) {
     const Point ring{x + 6, y - 4};
@@ -302,16 +298,8 @@ void Picture::draw_legend(Canvas& canvas) const {
     say("end");
     const bool missed = std::any_of(world_.valid_nodes().begin(), world_.valid_nodes().end(),
                                     [&](NodeId node) { return first_visits_[node] < 0; });
-    if (missed) {
-      canvas.rectangle({x, y - 9}, 10, 10, kMissed);
-      x += 16;
-      say("not visited");
-    }
-    if (world_.valid_count() < world_.node_count()) {
-      canvas.rectangle({x, y - 9}, 10, 10, kBlocked);
-      x += 16;
-      say("blocked");
-    }
+    if (missed) explain(kMissed, "not visited");
+    if (world_.valid_count() < world_.node_count()) explain(kBlocked, "blocked");
     y += kLineHeight + 4;
   }
   for (const std::string& note : notes_) {

@@ -12,6 +12,9 @@
 
 namespace graphdrl {
 
+// The step at which each node was first visited; -1 if never. [N]
+std::vector<int> first_visits(const World& world, std::span<const NodeId> walk);
+
 // A grid of many cells is drawn as cells, in one bitmap. Other worlds are drawn as nodes and edges, at their places or
 // laid out [report/layout.h]. The walk's colour goes from dark to light with time. Its start is a ring, its end an
 // arrow head. When it takes an edge again, it is drawn beside the first time. Nodes never visited are marked.
@@ -31,6 +34,7 @@ class Picture {
   void place_nodes();
   double height() const;
   std::string description() const;
+  std::string drawn_on(Canvas& canvas) const;
   void draw(Canvas& canvas) const;
   void draw_cells(Canvas& canvas) const;
   void draw_edges(Canvas& canvas) const;

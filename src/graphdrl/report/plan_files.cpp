@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/io/dot.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/graphml.h"
+#include "graphdrl/io/readers.h"
 #include "graphdrl/report/picture.h"
 #include "graphdrl/report/report_page.h"
 
@@ -26,33 +26,19 @@ bool has_coordinates(const World& world) {
   return world.has_places() && !(world.has_cells() && !world.map()->frame);
 }
 
-std::string label_of(const World& world, NodeId node) {
-  return world.labels().empty() ? std::to_string(node) : world.labels()[node];
-}
-
-// The step at which each node was first visited; empty if never.
-std::vector<std::string> visit_order(const Answer& report) {
-  std::vector<std::string> order(report.world.node_count());
-  const std::vector<NodeId>& walk = report.plan.walk;
-  for (std::size_t step = 0; step < walk.size(); ++step) {
-    if (order[walk[step]].empty()) order[walk[step]] = std::to_string(step);
-  }
-  return order;
+// The document on one line.
+std::string dumped(const Json& document) {
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 // A field of CSV [RFC 4180].
 std::string csv(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
 }
 
-std::string plan_csv(const Answer& report) {
-  const World& world = report.world;
+std::string plan_csv(const Answer& answer) {
+  const World& world = answer.world;
   const bool labels = !world.labels().empty();
   const bool cells = world.has_cells();
   const bool places = has_coordinates(world);
@@ -61,11 +47,11 @@ std::string plan_csv(const Answer& report) {
   if (cells) text += ",row,column";
   if (places) text += ",x,y";
   text += ",cost,visited\n";
-  const std::vector<double> costs = costs_so_far(report);
+  const std::vector<double> costs = costs_so_far(answer);
   std::vector<bool> seen(world.node_count());
   int visited = 0;
-  for (std::size_t step = 0; step < report.plan.walk.size(); ++step) {
-    const NodeId node = report.plan.walk[step];
+  for (std::size_t step = 0; step < answer.plan.walk.size(); ++step) {
+    const NodeId node = answer.plan.walk[step];
     if (!seen[node]) ++visited;
     seen[node] = true;
     text += fmt::format("{},{}", step, node);
@@ -77,75 +63,57 @@ std::string plan_csv(const Answer& report) {
   return text;
 }
 
-}  // namespace
-
-std::string format_walk(const World& world, std::span<const NodeId> walk) {
-  const bool labels = !world.labels().empty();
-  std::string text = labels ? "node,label\n" : "node\n";
-  for (const NodeId node : walk) {
-    text += labels ? fmt::format("{},{}\n", node, csv(escaped(world.labels()[node]))) : fmt::format("{}\n", node);
-  }
-  return text;
-}
-
-namespace {
-
-GraphMap graph_of(const World& world) {
+// The graph, and the step at which each node was first visited, empty if never.
+std::string plan_graph(const Answer& answer, std::string (*format)(const GraphMap&, const NodeColumn&)) {
+  const World& world = answer.world;
   if (world.graph().edge_count() > kMostEdges) {
     throw Error({.what = "a graph with too many edges for this format",
                  .expected = fmt::format("at most {}", kMostEdges),
                  .got = std::to_string(world.graph().edge_count()),
                  .where = world.name()});
   }
-  return world.to_map();
-}
-
-std::string plan_graphml(const Answer& report) {
-  return format_graphml(graph_of(report.world), {.name = "visit_order", .values = visit_order(report)});
-}
-
-std::string plan_dot(const Answer& report) {
-  return format_dot(graph_of(report.world), {.name = "visit_order", .values = visit_order(report)});
+  std::vector<std::string> order;
+  for (const int step : first_visits(world, answer.plan.walk)) order.push_back(step < 0 ? "" : std::to_string(step));
+  return format(world.to_map(), {.name = "visit_order", .values = std::move(order)});
 }
 
 // A line, and a point for every valid node [RFC 7946].
-std::string plan_geojson(const Answer& report) {
-  const World& world = report.world;
+std::string plan_geojson(const Answer& answer) {
+  const World& world = answer.world;
   const auto position = [&](NodeId node) { return Json::array({world.place(node).x, world.place(node).y}); };
   Json line = Json::array();
-  for (const NodeId node : report.plan.walk) line.push_back(position(node));
+  for (const NodeId node : answer.plan.walk) line.push_back(position(node));
   if (line.size() == 1) line.push_back(line[0]);  // a line has two positions
   Json features = Json::array();
   features.push_back({{"type", "Feature"},
                       {"geometry", {{"type", "LineString"}, {"coordinates", line}}},
                       {"properties",
-                       {{"policy", report.policy},
-                        {"visited", report.plan.visited},
-                        {"cost", report.plan.cost},
-                        {"budget", report.task.budget()}}}});
-  const std::vector<std::string> order = visit_order(report);
+                       {{"policy", answer.policy},
+                        {"visited", answer.plan.visited},
+                        {"cost", answer.plan.cost},
+                        {"budget", answer.task.budget()}}}});
+  const std::vector<int> order = first_visits(world, answer.plan.walk);
   for (const NodeId node : world.valid_nodes()) {
     features.push_back({{"type", "Feature"},
                         {"geometry", {{"type", "Point"}, {"coordinates", position(node)}}},
                         {"properties",
                          {{"node", node},
-                          {"label", label_of(world, node)},
-                          {"visit_order", order[node].empty() ? Json() : Json(std::stoi(order[node]))}}}});
+                          {"label", world.labels().empty() ? std::to_string(node) : world.labels()[node]},
+                          {"visit_order", order[node] < 0 ? Json() : Json(order[node])}}}});
   }
-  const Json document = {{"type", "FeatureCollection"}, {"features", features}};
-  return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return dumped({{"type", "FeatureCollection"}, {"features", features}});
 }
 
 // A message nav_msgs/Path [docs.ros.org], as `rostopic pub -f` and `ros2 topic pub` take it. Every pose faces the
 // next one.
-std::string plan_ros_path(const Answer& report) {
+std::string plan_ros_path(const Answer& answer) {
   std::string text = "header:\n  frame_id: map\nposes:\n";
-  const std::vector<NodeId>& walk = report.plan.walk;
+  const std::vector<NodeId>& walk = answer.plan.walk;
   double heading = 0;
   for (std::size_t i = 0; i < walk.size(); ++i) {
-    const Point at = report.world.place(walk[i]);
+    const Point at = answer.world.place(walk[i]);
     if (i + 1 < walk.size() && walk[i + 1] != walk[i]) {
-      const Point next = report.world.place(walk[i + 1]);
+      const Point next = answer.world.place(walk[i + 1]);
       heading = std::atan2(next.y - at.y, next.x - at.x);
     }
     text += fmt::format(
@@ -157,53 +125,37 @@ std::string plan_ros_path(const Answer& report) {
   return text;
 }
 
-std::string title_of(const Answer& report) {
-  return fmt::format("{}, {}", report.world.name().substr(0, kLongestTitle), report.policy);
+std::string title_of(const Answer& answer) {
+  return fmt::format("{}, {}", answer.world.name().substr(0, kLongestTitle), answer.policy);
 }
 
-Picture picture_of(const Answer& report) {
-  return Picture(report.world, report.plan.walk, title_of(report), plan_summary(report));
+Picture picture_of(const Answer& answer) {
+  return Picture(answer.world, answer.plan.walk, title_of(answer), plan_summary(answer));
 }
 
-std::string plan_svg(const Answer& report) {
-  return picture_of(report).svg();
-}
-
-std::string plan_moving_svg(const Answer& report) {
-  return picture_of(report).moving_svg();
-}
-
-std::string plan_png(const Answer& report) {
-  return picture_of(report).png();
-}
-
-std::string plan_html(const Answer& report) {
-  ReportPage page(title_of(report));
-  page.add_plan(report);
+std::string plan_html(const Answer& answer) {
+  ReportPage page(title_of(answer));
+  page.add_plan(answer);
   return page.html();
-}
-
-std::string plan_json_text(const Answer& report) {
-  return plan_json(report).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 struct PlanFormat {
   std::string_view ending;
-  std::string (*format)(const Answer& report);
+  std::string (*format)(const Answer& answer);
   bool needs_coordinates = false;
 };
 
 // A longer ending stands before a shorter one that it ends with.
 constexpr std::array kFormats = {
-    PlanFormat{".json", plan_json_text},
+    PlanFormat{".json", [](const Answer& answer) { return dumped(plan_json(answer)); }},
     PlanFormat{".csv", plan_csv},
-    PlanFormat{".graphml", plan_graphml},
-    PlanFormat{".dot", plan_dot},
+    PlanFormat{".graphml", [](const Answer& answer) { return plan_graph(answer, format_graphml); }},
+    PlanFormat{".dot", [](const Answer& answer) { return plan_graph(answer, format_dot); }},
     PlanFormat{".geojson", plan_geojson, true},
     PlanFormat{".yaml", plan_ros_path, true},
-    PlanFormat{".anim.svg", plan_moving_svg},
-    PlanFormat{".svg", plan_svg},
-    PlanFormat{".png", plan_png},
+    PlanFormat{".anim.svg", [](const Answer& answer) { return picture_of(answer).moving_svg(); }},
+    PlanFormat{".svg", [](const Answer& answer) { return picture_of(answer).svg(); }},
+    PlanFormat{".png", [](const Answer& answer) { return picture_of(answer).png(); }},
     PlanFormat{".html", plan_html},
 };
 
@@ -217,10 +169,19 @@ const PlanFormat& format_for(const std::string& file) {
 
 }  // namespace
 
-std::vector<double> costs_so_far(const Answer& report) {
-  const Graph& open = report.world.open();
+std::string format_walk(const World& world, std::span<const NodeId> walk) {
+  const bool labels = !world.labels().empty();
+  std::string text = labels ? "node,label\n" : "node\n";
+  for (const NodeId node : walk) {
+    text += labels ? fmt::format("{},{}\n", node, csv(escaped(world.labels()[node]))) : fmt::format("{}\n", node);
+  }
+  return text;
+}
+
+std::vector<double> costs_so_far(const Answer& answer) {
+  const Graph& open = answer.world.open();
   std::vector<double> costs = {0};
-  const std::vector<NodeId>& walk = report.plan.walk;
+  const std::vector<NodeId>& walk = answer.plan.walk;
   for (std::size_t i = 1; i < walk.size(); ++i) {
     const double step = walk[i] == walk[i - 1] ? 1 : open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
     costs.push_back(costs.back() + step);
@@ -228,30 +189,29 @@ std::vector<double> costs_so_far(const Answer& report) {
   return costs;
 }
 
-nlohmann::ordered_json plan_json(const Answer& report) {
-  const World& world = report.world;
-  const Plan& plan = report.plan;
+nlohmann::ordered_json plan_json(const Answer& answer) {
+  const World& world = answer.world;
+  const Plan& plan = answer.plan;
   Json json;
   json["map"] = world.name();
-  json["policy"] = report.policy;
+  json["policy"] = answer.policy;
   json["start"] = plan.walk.front();
-  json["end"] = report.task.ends_anywhere() ? Json() : Json(report.task.end());
-  json["budget"] = report.task.budget();
+  json["end"] = answer.task.ends_anywhere() ? Json() : Json(answer.task.end());
+  json["budget"] = answer.task.budget();
   json["walk"] = plan.walk;
+  const auto add_steps = [&](const char* key, const auto& value_at) {
+    Json& values = json[key] = Json::array();
+    for (const NodeId node : plan.walk) values.push_back(value_at(node));
+  };
   if (world.has_cells()) {
-    json["walk_cells"] = Json::array();
-    for (const NodeId node : plan.walk) {
+    add_steps("walk_cells", [&](NodeId node) {
       const Cell cell = world.map()->cell(node);
-      json["walk_cells"].push_back({cell.row, cell.col});
-    }
+      return Json{cell.row, cell.col};
+    });
   }
-  if (!world.labels().empty()) {
-    json["walk_labels"] = Json::array();
-    for (const NodeId node : plan.walk) json["walk_labels"].push_back(world.labels()[node]);
-  }
+  if (!world.labels().empty()) add_steps("walk_labels", [&](NodeId node) { return world.labels()[node]; });
   if (has_coordinates(world)) {
-    json["walk_places"] = Json::array();
-    for (const NodeId node : plan.walk) json["walk_places"].push_back({world.place(node).x, world.place(node).y});
+    add_steps("walk_places", [&](NodeId node) { return Json{world.place(node).x, world.place(node).y}; });
     json["unit"] = world.unit();
   }
   json["visited"] = plan.visited;
@@ -262,12 +222,12 @@ nlohmann::ordered_json plan_json(const Answer& report) {
   if (world.has_prizes()) {
     json["max_prize"] = plan.bound;
   } else {
-    json["max_visited"] = report.max_visited();
+    json["max_visited"] = answer.max_visited();
   }
   json["gap"] = world.percent_of_all(plan.bound) - world.percent_of_all(plan.prize);
   json["optimal"] = plan.optimal;
-  json["unreachable"] = report.unreachable;
-  json["elapsed_s"] = report.elapsed_s;
+  json["unreachable"] = answer.unreachable;
+  json["elapsed_s"] = answer.elapsed_s;
   return json;
 }
 
@@ -283,9 +243,9 @@ void check_plan_file(const World& world, const std::string& file) {
   throw Error({.what = fmt::format("{} needs coordinates, and the map has none", format.ending), .where = file});
 }
 
-void write_plan(const Answer& report, const std::string& file) {
-  check_plan_file(report.world, file);
-  write_file(file, format_for(file).format(report));
+void write_plan(const Answer& answer, const std::string& file) {
+  check_plan_file(answer.world, file);
+  write_file(file, format_for(file).format(answer));
 }
 
 }  // namespace graphdrl

@@ -11,10 +11,10 @@
 namespace graphdrl {
 
 // The document that `graphdrl plan --json` prints.
-nlohmann::ordered_json plan_json(const Answer& report);
+nlohmann::ordered_json plan_json(const Answer& answer);
 
 // The cost so far at every node of the walk.
-std::vector<double> costs_so_far(const Answer& report);
+std::vector<double> costs_so_far(const Answer& answer);
 
 // The walk, a node a line below a header: node ids, with the labels beside them. read_plan() reads it.
 std::string format_walk(const World& world, std::span<const NodeId> walk);
@@ -25,7 +25,7 @@ std::string format_walk(const World& world, std::span<const NodeId> walk);
 void check_plan_file(const World& world, const std::string& file);
 
 // Writes a plan in the format of the file's ending. Throws Error.
-void write_plan(const Answer& report, const std::string& file);
+void write_plan(const Answer& answer, const std::string& file);
 
 // The endings, for help texts.
 std::string plan_file_endings();
@@ -42,6 +42,6 @@ Answer read_plan(const World& world, const std::string& file, const Asked& asked
 Answer parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked = {});
 
 // Throws Error, naming `file`, if the plan's walk costs more than the task's budget or does not end where it must.
-void check_walk(const Answer& report, const std::string& file);
+void check_walk(const Answer& answer, const std::string& file);
 
 }  // namespace graphdrl

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "graphdrl/report/terminal_picture.h"
@@ -26,8 +27,12 @@ std::string format_duration(double seconds) {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay(std::FILE* out, std::string unit, std::int64_t first)
-    : out_(out), terminal_(isatty(fileno(out)) != 0), unit_(std::move(unit)), first_(first), last_shown_(start_) {}
+ProgressDisplay::ProgressDisplay(std::string unit, std::int64_t first, double quiet_s)
+    : terminal_(isatty(fileno(stderr)) != 0),
+      unit_(std::move(unit)),
+      first_(first),
+      quiet_s_(quiet_s),
+      last_shown_(start_) {}
 
 void ProgressDisplay::show(std::int64_t done, std::int64_t all, const std::string& status, bool always) {
   if (!is_due(always)) return;
@@ -45,29 +50,31 @@ void ProgressDisplay::show_line(const std::string& line, double share) {
 
 bool ProgressDisplay::is_due(bool always) {
   const Clock::time_point now = Clock::now();
-  if (!always && now - last_shown_ < (terminal_ ? kTerminalInterval : kPlainInterval)) return false;
+  const bool early =
+      now - start_ < Seconds(quiet_s_) || now - last_shown_ < (terminal_ ? kTerminalInterval : kPlainInterval);
+  if (early && !always) return false;
   last_shown_ = now;
   return true;
 }
 
 void ProgressDisplay::write(std::string line, double share) {
   if (!terminal_) {
-    std::fputs((unit_ + " " + line + '\n').c_str(), out_);
+    std::fputs((unit_ + " " + line + '\n').c_str(), stderr);
   } else {
     // The bar takes what room the numbers leave.
-    const auto columns = static_cast<std::size_t>(screen_of(out_).columns);
+    const auto columns = static_cast<std::size_t>(screen_of(stderr).columns);
     const std::size_t room = columns > line.size() + 4 ? std::min(columns - line.size() - 4, kMaxBarWidth) : 0;
     const auto filled = static_cast<std::size_t>(static_cast<double>(room) * std::clamp(share, 0.0, 1.0));
     if (room > 0) line = fmt::format("[{}{}] {}", std::string(filled, '#'), std::string(room - filled, '.'), line);
     if (line.size() > columns) line.resize(columns);
-    std::fputs(("\r" + line + "\033[K").c_str(), out_);
+    std::fputs(("\r" + line + "\033[K").c_str(), stderr);
     line_open_ = true;
   }
-  std::fflush(out_);
+  std::fflush(stderr);
 }
 
 void ProgressDisplay::finish() {
-  if (line_open_) std::fputc('\n', out_);
+  if (line_open_) std::fputc('\n', stderr);
   line_open_ = false;
 }
 

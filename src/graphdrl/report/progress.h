@@ -3,16 +3,18 @@
 
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 namespace graphdrl {
 
-// A bar that rewrites its line on a terminal; plain lines at intervals elsewhere; nothing if the stream is closed.
+// A bar that rewrites its line on a terminal; plain lines at intervals elsewhere; nothing if standard error is closed.
 class ProgressDisplay {
  public:
-  // `unit`: what is counted, such as "episode". `first`: how many were done before this session.
-  ProgressDisplay(std::FILE* out, std::string unit, std::int64_t first);
+  // `unit`: what is counted, such as "episode". `first`: how many were done before this session. Nothing is shown in
+  // the first `quiet_s` seconds: for work that is mostly done by then.
+  explicit ProgressDisplay(std::string unit, std::int64_t first = 0, double quiet_s = 0);
+  ProgressDisplay(const ProgressDisplay&) = delete;
+  ~ProgressDisplay() { finish(); }
 
   // Shows how many are done and the status, unless the last one was shown a moment ago; `always` shows it in any case.
   void show(std::int64_t done, std::int64_t all, const std::string& status, bool always = false);
@@ -29,10 +31,10 @@ class ProgressDisplay {
 
   using Clock = std::chrono::steady_clock;
 
-  std::FILE* out_;
   bool terminal_;
   std::string unit_;
   std::int64_t first_;
+  double quiet_s_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_shown_;
   bool line_open_ = false;

@@ -3,14 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/io/csv.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/io/text.h"
@@ -25,14 +25,14 @@ std::vector<NodeId> walk_of_json(const World& world, const nlohmann::json& docum
     throw Error({.what = "no walk", .expected = "an array, or one under the key \"walk\"", .where = file});
   std::vector<NodeId> nodes;
   for (const nlohmann::json& item : walk) {
-    // A number is a node id; a text names a node as users do.
-    const std::string name = item.is_number_integer() ? fmt::format("#{}", item.dump())
-                             : item.is_string()       ? item.get<std::string>()
-                                                      : "";
-    if (name.empty()) {
+    const std::string role = fmt::format("{}: step {}", file, nodes.size());
+    if (item.is_number_integer()) {
+      nodes.push_back(checked_node(world, item.get<std::int64_t>(), role));
+    } else if (item.is_string()) {
+      nodes.push_back(parse_node(world, item.get<std::string>(), role));
+    } else {
       throw Error({.what = "not a node", .expected = "a node id or a label", .got = shortened(item), .where = file});
     }
-    nodes.push_back(parse_node(world, name, fmt::format("{}: step {}", file, nodes.size())));
   }
   return nodes;
 }
@@ -42,10 +42,27 @@ struct Row {
   std::vector<std::string> fields;
 };
 
-std::vector<Row> rows_of(const std::string& text, const std::string& file, char& separator) {
+// A node's id: "5"; empty where the text is no whole number.
+std::optional<std::int64_t> parse_id(std::string_view text) {
+  std::int64_t id = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(id) : std::nullopt;
+}
+
+// Whether a line that looks like a comment names nodes: "#5", or labels that begin so.
+bool names_nodes(const World& world, std::string_view line) {
+  const std::vector<std::string> names = split_fields(line, separator_of(line));
+  return !names.empty() && std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    const auto& labels = world.labels();
+    return (name.starts_with('#') && parse_id(std::string_view(name).substr(1))) ||
+           std::find(labels.begin(), labels.end(), name) != labels.end();
+  });
+}
+
+std::vector<Row> rows_of(const World& world, const std::string& text, const std::string& file, char& separator) {
   std::vector<Row> rows;
   for (Lines lines(text); lines.next();) {
-    if (is_comment(lines.line())) continue;
+    if (is_comment(lines.line()) && !names_nodes(world, lines.line())) continue;
     if (rows.empty()) separator = separator_of(lines.line());
     rows.push_back({fmt::format("{}:{}", file, lines.number()), split_fields(lines.line(), separator)});
   }
@@ -54,7 +71,7 @@ std::vector<Row> rows_of(const std::string& text, const std::string& file, char&
 
 std::vector<NodeId> walk_of_lines(const World& world, const std::string& text, const std::string& file) {
   char separator = ' ';
-  const std::vector<Row> rows = rows_of(text, file, separator);
+  const std::vector<Row> rows = rows_of(world, text, file, separator);
   if (rows.empty()) return {};
   const std::vector<std::string>& header = rows[0].fields;
   const std::array<std::string_view, 2> id_names = {"node", "id"};
@@ -66,7 +83,8 @@ std::vector<NodeId> walk_of_lines(const World& world, const std::string& text, c
   const int column = ids ? id_column : std::max(label_column, 0);
   std::vector<NodeId> nodes;
   const auto add = [&](const std::string& name, const std::string& where) {
-    nodes.push_back(parse_node(world, ids && parse_number(name) ? fmt::format("#{}", name) : name, where + ": node"));
+    const auto id = ids ? parse_id(name) : std::nullopt;
+    nodes.push_back(id ? checked_node(world, *id, where + ": node") : parse_node(world, name, where + ": node"));
   };
   if (!has_header && rows.size() == 1) {
     for (const std::string& name : header) add(name, rows[0].where);
@@ -105,24 +123,21 @@ std::optional<double> number_at(const nlohmann::json& document, const char* key)
   return item->get<double>();
 }
 
-// What a document says of the task.
-Asked read_task(const World& world, const nlohmann::json& document, const std::string& file) {
-  Asked asked;
-  if (const auto budget = number_at(document, "budget")) asked.budget = Budget(*budget);
-  if (const auto end = document.find("end"); end != document.end() && end->is_number_integer()) {
-    asked.end = End::at(parse_node(world, fmt::format("#{}", end->dump()), file + ": end"));
-  }
-  return asked;
+// The end that a document states.
+std::optional<End> end_in(const nlohmann::json& document, const World& world, const std::string& file) {
+  const auto end = document.find("end");
+  if (end == document.end() || !end->is_number_integer()) return std::nullopt;
+  return End::at(checked_node(world, end->get<std::int64_t>(), file + ": end"));
 }
 
 // What it says of the plan.
-void read_claims(const World& world, const nlohmann::json& document, Answer& report) {
+void read_claims(const World& world, const nlohmann::json& document, Answer& answer) {
   if (const auto policy = document.find("policy"); policy != document.end() && policy->is_string()) {
-    report.policy = *policy;
+    answer.policy = *policy;
   }
-  if (const auto bound = number_at(document, "upper_bound")) report.plan.bound = *bound / 100 * world.total_prize();
-  if (!world.has_prizes()) report.plan.bound = std::round(report.plan.bound);
-  report.plan.optimal = document.value("optimal", nlohmann::json()) == true;
+  if (const auto bound = number_at(document, "upper_bound")) answer.plan.bound = *bound / 100 * world.total_prize();
+  if (!world.has_prizes()) answer.plan.bound = std::round(answer.plan.bound);
+  answer.plan.optimal = document.value("optimal", nlohmann::json()) == true;
 }
 
 }  // namespace
@@ -140,29 +155,32 @@ Answer parse_plan(const World& world, const std::string& text, const std::string
   check_steps(world, walk, file);
   const Task any(world, walk.front(), kNoLimit);
   Plan plan = plan_of_walk(any, std::move(walk));
-  const Asked said = document.is_object() ? read_task(world, document, file) : Asked();
-  const auto end = asked.end ? asked.end : said.end;
-  const auto budget = asked.budget ? asked.budget : said.budget;
-  const Task task(
-      world,
-      {.budget = budget.value_or(Budget(plan.cost)), .start = plan.walk.front(), .end = end.value_or(End::anywhere())});
-  Answer report{.world = world, .task = task, .policy = file, .plan = std::move(plan)};
-  if (document.is_object()) read_claims(world, document, report);
-  return report;
+  const End end = asked.end.value_or(end_in(document, world, file).value_or(End::anywhere()));
+  const auto task = [&] {
+    try {
+      const Budget said(number_at(document, "budget").value_or(plan.cost));
+      return Task(world, {.budget = asked.budget.value_or(said), .start = plan.walk.front(), .end = end});
+    } catch (const Error& error) {
+      throw Error({.what = error.what(), .where = file});
+    }
+  };
+  Answer answer{.world = world, .task = task(), .policy = file, .plan = std::move(plan)};
+  if (document.is_object()) read_claims(world, document, answer);
+  return answer;
 }
 
-void check_walk(const Answer& report, const std::string& file) {
-  const Task& task = report.task;
-  if (report.plan.cost > task.limit()) {
+void check_walk(const Answer& answer, const std::string& file) {
+  const Task& task = answer.task;
+  if (answer.plan.cost > task.limit()) {
     throw Error({.what = "the walk costs more than the budget",
                  .expected = "at most " + decimal(task.budget()),
-                 .got = decimal(report.plan.cost),
+                 .got = decimal(answer.plan.cost),
                  .where = file});
   }
-  if (!task.ends_anywhere() && report.plan.walk.back() != task.end()) {
+  if (!task.ends_anywhere() && answer.plan.walk.back() != task.end()) {
     throw Error({.what = "the walk ends elsewhere",
                  .expected = fmt::format("node {}", task.end()),
-                 .got = fmt::format("node {}", report.plan.walk.back()),
+                 .got = fmt::format("node {}", answer.plan.walk.back()),
                  .where = file});
   }
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <random>
 
@@ -9,7 +10,7 @@
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/io/text.h"
-#include "graphdrl/report/base64.h"
+#include "graphdrl/report/encoding.h"
 #include "graphdrl/report/layout.h"
 #include "graphdrl/report/page_parts.h"
 
@@ -67,14 +68,14 @@ Json world_json(const World& world) {
   return json;
 }
 
-Json plan_of(const Answer& report) {
-  Json json = {{"policy", report.policy},
-               {"walk", report.plan.walk},
-               {"visited", report.plan.visited},
-               {"budget", report.task.budget()},
-               {"optimal", report.plan.optimal}};
-  if (report.world.open().weighted()) json["costs"] = costs_so_far(report);
-  if (std::isfinite(report.plan.bound)) json["upper_bound"] = report.world.percent_of_all(report.plan.bound);
+Json plan_of(const Answer& answer) {
+  Json json = {{"policy", answer.policy},
+               {"walk", answer.plan.walk},
+               {"visited", answer.plan.visited},
+               {"budget", answer.task.budget()},
+               {"optimal", answer.plan.optimal}};
+  if (answer.world.open().weighted()) json["costs"] = costs_so_far(answer);
+  if (std::isfinite(answer.plan.bound)) json["upper_bound"] = answer.world.percent_of_all(answer.plan.bound);
   return json;
 }
 
@@ -97,29 +98,6 @@ Json metrics_of(const std::filesystem::path& file) {
   return entries;
 }
 
-std::string html_text(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 // A random word, unknown before the page is made.
 std::string nonce() {
   std::random_device device;
@@ -131,27 +109,26 @@ std::string nonce() {
 }  // namespace
 
 ReportPage::ReportPage(const std::string& title, bool watch)
-    : document_({{"version", kDataVersion}, {"title", title}, {"watch", watch}}) {
-  clear();
-}
+    : document_({{"version", kDataVersion},
+                 {"title", title},
+                 {"watch", watch},
+                 {"replays", Json::array()},
+                 {"runs", Json::array()},
+                 {"evaluations", Json::array()}}) {}
 
-void ReportPage::clear() {
-  for (const char* const section : {"replays", "runs", "evaluations"}) document_[section] = Json::array();
-}
-
-void ReportPage::add_plan(const Answer& report, const std::optional<MoveScores>& scores) {
+void ReportPage::add_plan(const Answer& answer, const std::optional<MoveScores>& scores) {
   Json& replays = document_["replays"];
   Json* replay = nullptr;
   for (Json& one : replays) {
-    if (one["world"]["name"] == report.world.name()) replay = &one;
+    if (one["world"]["name"] == answer.world.name()) replay = &one;
   }
   if (replay == nullptr) {
-    const std::string& name = report.world.name();
-    if (!worlds_.contains(name)) worlds_[name] = world_json(report.world);
+    const std::string& name = answer.world.name();
+    if (!worlds_.contains(name)) worlds_[name] = world_json(answer.world);
     replays.push_back({{"title", name}, {"world", worlds_[name]}, {"plans", Json::array()}});
     replay = &replays.back();
   }
-  Json plan = plan_of(report);
+  Json plan = plan_of(answer);
   if (scores) {
     plan["scores_name"] = scores->name;
     plan["lower_is_better"] = scores->lower_is_better;
@@ -178,39 +155,34 @@ void ReportPage::add_evaluation(const std::string& name, const nlohmann::json& e
                                       {"overall", Json(evaluation.value("overall", nlohmann::json::array()))}});
 }
 
+ReportPage ReportPage::emptied() const {
+  ReportPage page(document_["title"].get<std::string>(), document_["watch"].get<bool>());
+  page.worlds_ = worlds_;
+  return page;
+}
+
 std::string ReportPage::data() const {
   return document_.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string ReportPage::html() const {
-  std::string data_element;  // no text in it ends the element
-  for (const char c : data()) {
-    if (c == '<') {
-      data_element += "\\u003c";
-    } else {
-      data_element += c;
-    }
-  }
-  const std::string title = html_text(document_["title"].get<std::string>());
+  const std::string data_element = boost::replace_all_copy(data(), "<", "\\u003c");  // no text in it ends the element
+  const std::string title = markup(document_["title"].get<std::string>());
   const std::string secret = nonce();
-  const std::string_view connect = document_["watch"] ? "'self'" : "'none'";
-  const auto value_of = [&](std::string_view token) -> std::string_view {
-    if (token == "title") return title;
-    if (token == "css") return page_style();
-    if (token == "chart_library") return chart_library();
-    if (token == "script") return page_script();
-    if (token == "data") return data_element;
-    if (token == "nonce") return secret;
-    if (token == "connect") return connect;
-    throw std::logic_error(fmt::format("page.html has a token {}", token));
-  };
+  const std::map<std::string_view, std::string_view> values = {{"title", title},
+                                                               {"css", page_style()},
+                                                               {"chart_library", chart_library()},
+                                                               {"script", page_script()},
+                                                               {"data", data_element},
+                                                               {"nonce", secret},
+                                                               {"connect", document_["watch"] ? "'self'" : "'none'"}};
   // In one pass: tokens within the text put in are not replaced.
   std::string page;
   std::string_view rest = page_template();
   for (std::size_t begin = rest.find("{{"); begin != std::string_view::npos; begin = rest.find("{{")) {
     const std::size_t end = rest.find("}}", begin);
     page += rest.substr(0, begin);
-    page += value_of(rest.substr(begin + 2, end - begin - 2));
+    page += values.at(rest.substr(begin + 2, end - begin - 2));
     rest.remove_prefix(end + 2);
   }
   page += rest;

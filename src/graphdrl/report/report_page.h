@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,17 +18,17 @@ class ReportPage {
   // watch: the page asks its server for data.json every two seconds.
   explicit ReportPage(const std::string& title, bool watch = false);
 
-  // Forgets what was added, but not the worlds: a graph without coordinates is laid out once.
-  void clear();
-
   // Plans on one world are shown together, two of them side by side.
-  void add_plan(const Answer& report, const std::optional<MoveScores>& scores = {});
+  void add_plan(const Answer& answer, const std::optional<MoveScores>& scores = {});
 
   // The curves of a run: the lines of its metrics.jsonl. Ignores a last line that is still being written. Throws Error.
   void add_run(const std::string& name, const std::filesystem::path& folder);
 
   // evaluation: what `graphdrl evaluate --json` prints.
   void add_evaluation(const std::string& name, const nlohmann::json& evaluation);
+
+  // The same page with nothing on it yet, for the same worlds: they are not laid out again.
+  ReportPage emptied() const;
 
   // The data of the page, as one JSON document.
   std::string data() const;
@@ -37,7 +38,7 @@ class ReportPage {
 
  private:
   nlohmann::ordered_json document_;
-  nlohmann::ordered_json worlds_;  // by name
+  std::map<std::string, nlohmann::ordered_json> worlds_;  // those shown, by name
 };
 
 }  // namespace graphdrl

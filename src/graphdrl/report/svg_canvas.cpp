@@ -1,53 +1,13 @@
 #include <fmt/format.h>
-#include <png.h>
 
-#include "graphdrl/base/error.h"
-#include "graphdrl/io/utf8.h"
-#include "graphdrl/report/base64.h"
+#include "graphdrl/io/picture.h"
 #include "graphdrl/report/canvas.h"
+#include "graphdrl/report/encoding.h"
 
 namespace graphdrl {
 namespace {
 
-std::string png_of(const Bitmap& bitmap) {
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(bitmap.width);
-  image.height = static_cast<png_uint_32>(bitmap.height);
-  image.format = PNG_FORMAT_RGB;
-  static_assert(sizeof(Colour) == 3);
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, bitmap.pixels.data(), 0, nullptr) == 0) {
-    throw Error({.what = fmt::format("the picture cannot be written ({})", escaped(image.message))});
-  }
-  bytes.resize(size);
-  return bytes;
-}
-
-// For texts and attributes of XML.
-std::string xml(std::string_view text) {
-  std::string result;
-  for (const char c : valid_utf8(text)) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c >= 0 && c < ' ' ? ' ' : c;  // XML has no other control characters
-    }
-  }
-  return result;
-}
+static_assert(sizeof(Colour) == 3);
 
 std::string points_of(std::span<const Point> points) {
   std::string text;
@@ -60,10 +20,10 @@ class SvgCanvas final : public Canvas {
   SvgCanvas(double width, double height, const std::string& title, const std::string& description,
             std::optional<double> seconds)
       : seconds_(seconds) {
-    text_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" height=\"{1:g}\" viewBox=\"0 0 {0:g} {1:g}\" "
-        "role=\"img\" font-family=\"system-ui, sans-serif\">\n<title>{2}</title>\n<desc>{3}</desc>\n",
-        width, height, xml(title), xml(description));
+    text_ = fmt::format(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0:g}" height="{1:g}" )"
+                        R"(viewBox="0 0 {0:g} {1:g}" role="img" font-family="system-ui, sans-serif">)"
+                        "\n<title>{2}</title>\n<desc>{3}</desc>\n",
+                        width, height, markup(title), markup(description));
   }
 
   void rectangle(Point corner, double width, double height, Colour fill) override {
@@ -75,7 +35,8 @@ class SvgCanvas final : public Canvas {
     text_ += fmt::format(
         "<image x=\"{:.6g}\" y=\"{:.6g}\" width=\"{:.6g}\" height=\"{:.6g}\" style=\"image-rendering: pixelated\" "
         "href=\"data:image/png;base64,{}\"/>\n",
-        corner.x, corner.y, width, width * bitmap.height / bitmap.width, base64(png_of(bitmap)));
+        corner.x, corner.y, width, width * bitmap.height / bitmap.width,
+        base64(format_png(bitmap.width, bitmap.height, 3, bitmap.pixels.data())));
   }
 
   void segments(std::span<const Segment> segments, Colour colour, double width) override {
@@ -107,7 +68,7 @@ class SvgCanvas final : public Canvas {
     const char* const anchors[] = {"start", "middle", "end"};
     text_ +=
         fmt::format("<text x=\"{:.6g}\" y=\"{:.6g}\" font-size=\"{:.6g}\" fill=\"{}\" text-anchor=\"{}\">{}</text>\n",
-                    at.x, at.y, size, hex(colour), anchors[static_cast<int>(anchor)], xml(text));
+                    at.x, at.y, size, hex(colour), anchors[static_cast<int>(anchor)], markup(text));
   }
 
   void walk_part(std::span<const Point> points, Colour colour, double width, double begin, double end) override {

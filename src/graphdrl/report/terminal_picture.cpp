@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "graphdrl/report/colour.h"
-#include "graphdrl/report/map_drawing.h"
+#include "graphdrl/report/picture.h"
 
 namespace graphdrl {
 namespace {

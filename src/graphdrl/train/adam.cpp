@@ -22,17 +22,13 @@ void for_each_block(std::size_t count, const Visit& visit) {
 
 }  // namespace
 
-void Adam::step(std::span<const float> grad, std::span<float> values) {
-  ++state_.steps;
-  const auto t = static_cast<double>(state_.steps);
-  const AdamStep step{.clamp = static_cast<float>(options_.clamp),
-                      .beta1 = static_cast<float>(options_.beta1),
-                      .beta2 = static_cast<float>(options_.beta2),
-                      .rate = static_cast<float>(options_.learning_rate / (1 - std::pow(options_.beta1, t))),
-                      .second_scale = static_cast<float>(1 / std::sqrt(1 - std::pow(options_.beta2, t))),
-                      .epsilon = static_cast<float>(options_.epsilon)};
+void AdamState::step(std::span<const float> grad, double learning_rate, std::span<float> values) {
+  ++steps;
+  const auto t = static_cast<double>(steps);
+  const auto rate = static_cast<float>(learning_rate / (1 - std::pow(kAdamBeta1, t)));
+  const auto second_scale = static_cast<float>(1 / std::sqrt(1 - std::pow(kAdamBeta2, t)));
   for_each_block(values.size(), [&](std::size_t begin, std::size_t size) {
-    adam_update(step, grad.data() + begin, state_.exp_avg.data() + begin, state_.exp_avg_sq.data() + begin,
+    adam_update(rate, second_scale, grad.data() + begin, exp_avg.data() + begin, exp_avg_sq.data() + begin,
                 values.data() + begin, size);
   });
 }

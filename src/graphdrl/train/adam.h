@@ -10,41 +10,17 @@
 
 namespace graphdrl {
 
-struct AdamOptions {
-  double learning_rate = 1e-3;
-  double beta1 = 0.9;
-  double beta2 = 0.999;
-  double epsilon = 1e-8;
-  double clamp = 1.0;  // gradients are cut to [-clamp, clamp], element by element, as in the author's code
-};
-
-// What Adam remembers, under PyTorch's names.
+// The optimiser of a flat buffer, which is all that it remembers; under PyTorch's names.
 struct AdamState {
   AdamState() = default;
   explicit AdamState(std::size_t count) : exp_avg(count), exp_avg_sq(count) {}
 
+  // Takes a step. REQUIRES: both as long as the moments.
+  void step(std::span<const float> grad, double learning_rate, std::span<float> values);
+
   std::vector<float> exp_avg;     // mean of the gradients
   std::vector<float> exp_avg_sq;  // mean of their squares
   std::int64_t steps = 0;
-};
-
-// The optimiser of a flat buffer of `count` parameters.
-class Adam {
- public:
-  Adam(std::size_t count, const AdamOptions& options) : options_(options), state_(count) {}
-
-  // One step. REQUIRES: both as long as the moments.
-  void step(std::span<const float> grad, std::span<float> values);
-
-  void set_learning_rate(double rate) { options_.learning_rate = rate; }
-
-  const AdamState& state() const { return state_; }
-  // REQUIRES: as many moments as before.
-  void set_state(AdamState state) { state_ = std::move(state); }
-
- private:
-  AdamOptions options_;
-  AdamState state_;
 };
 
 // θ' ← share · θ + (1 - share) · θ' [paper, eq. 6]

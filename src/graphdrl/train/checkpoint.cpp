@@ -1,10 +1,13 @@
 #include "graphdrl/train/checkpoint.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/note.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/train/options.h"
 
@@ -21,8 +24,8 @@ constexpr const char* kFirstMoment = "adam.exp_avg";
 constexpr const char* kSecondMoment = "adam.exp_avg_sq";
 constexpr const char* kAdamSteps = "adam.step";
 
-std::string layout_of(const std::string& preset) {
-  return std::to_string(preset == kExplorerPreset ? kExplorerLayout : kPaperLayout);
+int layout_of(const std::string& preset) {
+  return preset == kExplorerPreset ? kExplorerLayout : kPaperLayout;
 }
 
 [[noreturn]] void refuse_number(const Checkpoint& checkpoint, const char* key) {
@@ -32,7 +35,7 @@ std::string layout_of(const std::string& preset) {
 }  // namespace
 
 CheckpointWriter::CheckpointWriter(const std::string& preset)
-    : metadata_{{kLayoutKey, layout_of(preset)}, {kPresetKey, preset}} {}
+    : metadata_{{kLayoutKey, std::to_string(layout_of(preset))}, {kPresetKey, preset}} {}
 
 void CheckpointWriter::add_json(const std::string& key, const Json& json) {
   metadata_[key] = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -61,10 +64,15 @@ void CheckpointWriter::add(const std::string& prefix, ParameterBuffer parameters
 Checkpoint Checkpoint::read(const std::filesystem::path& path) {
   Checkpoint checkpoint(Safetensors::read(path));
   if (checkpoint.metadata(kProgressKey).empty()) checkpoint.fail("not a checkpoint");
-  const std::string expected = layout_of(checkpoint.metadata(kPresetKey));
-  if (const std::string& layout = checkpoint.metadata(kLayoutKey); layout != expected) {
+  const int expected = layout_of(checkpoint.metadata(kPresetKey));
+  const std::string& layout = checkpoint.metadata(kLayoutKey);
+  if (layout == std::to_string(expected)) {
+    checkpoint.file_.require_checksum();
+  } else if (layout == std::to_string(expected - 1)) {
+    note(path.string() + ": no checksum: whether the checkpoint is undamaged cannot be told");
+  } else {
     throw Error({.what = "a checkpoint of another version of graphdrl, which cannot be gone on with: begin anew",
-                 .expected = "layout " + expected,
+                 .expected = fmt::format("layout {}", expected),
                  .got = layout.empty() ? "an older one" : in_quotes(layout),
                  .where = path.string()});
   }
@@ -115,6 +123,10 @@ void Checkpoint::read_number(const Json& json, const char* key, double& value) c
   const auto found = json.find(key);
   if (found == json.end() || !found->is_number()) refuse_number(*this, key);
   found->get_to(value);
+}
+
+bool Checkpoint::holds_options() const {
+  return file_.has_checksum();
 }
 
 TrainingProgress Checkpoint::progress() const {

@@ -3,7 +3,9 @@
 //   adam.exp_avg, adam.exp_avg_sq, adam.step    Adam's state, under PyTorch's names
 //   random.state [4]                            the random numbers
 //   replay.*                                    what is remembered to learn from
-// and, as metadata, `layout`, `preset` and `progress` {done, samples, elapsed_s}. A recipe adds what else it needs.
+//   metrics                                     the lines of metrics.jsonl
+// and, as metadata, `layout`, `preset`, `options` (config.json) and `progress` {done, samples, elapsed_s}. A recipe
+// adds what else it needs.
 #pragma once
 
 #include <filesystem>
@@ -15,19 +17,14 @@
 #include "graphdrl/base/random.h"
 #include "graphdrl/nn/parameters.h"
 #include "graphdrl/train/adam.h"
+#include "graphdrl/train/run_directory.h"
 
 namespace graphdrl {
 
-// Grows with every change that makes a preset's older checkpoints unreadable. The layouts before 2 had no number.
-inline constexpr int kPaperLayout = 2;
-inline constexpr int kExplorerLayout = 3;
-
-// Where a training stands.
-struct TrainingProgress {
-  std::int64_t done = 0;     // episodes or rounds
-  std::int64_t samples = 0;  // steps or states, of all of them
-  double elapsed_s = 0;      // of all sessions
-};
+// Grows with every change that makes a preset's older checkpoints unreadable, or that older programs cannot read.
+// Since these there is a checksum, and the checkpoint holds the options and the metrics.
+inline constexpr int kPaperLayout = 3;
+inline constexpr int kExplorerLayout = 4;
 
 class CheckpointWriter {
  public:
@@ -57,7 +54,8 @@ class CheckpointWriter {
   // The tensors under their names, each after the prefix: "online." or "target.".
   void add(const std::string& prefix, ParameterBuffer parameters);
 
-  void write(const std::filesystem::path& path) const { write_safetensors(path, tensors_, metadata_); }
+  // The file's content.
+  std::string content() const { return format_safetensors(tensors_, metadata_); }
 
  private:
   std::vector<TensorView> tensors_;
@@ -68,7 +66,7 @@ class CheckpointWriter {
 // A checkpoint, read. All that read from it throw Error, naming the file, where something is missing or cannot be.
 class Checkpoint {
  public:
-  // Throws Error also where the layout is another.
+  // Throws Error also where the layout is another. The layout before this one is read, with a note: it has no checksum.
   static Checkpoint read(const std::filesystem::path& path);
   // Throws Error where the checkpoint is of another preset than the run's configuration.
   void require_preset(const std::string& preset) const;
@@ -85,13 +83,16 @@ class Checkpoint {
   }
   std::int64_t size_of(const std::string& name) const;
   // Metadata. Gives a discarded value for what is no JSON.
+  bool has_json(const std::string& key) const { return file_.metadata().contains(key); }
   nlohmann::ordered_json json(const std::string& key) const;
 
+  // Whether it holds the options and the metrics.
+  bool holds_options() const;
   TrainingProgress progress() const;
   Rng rng() const;
   template <typename Parameters>
   Parameters parameters(const std::string& prefix) const {
-    return Parameters::from_file(file_, prefix);
+    return Parameters(file_, prefix);
   }
   AdamState adam(std::size_t trainable_count) const;
 

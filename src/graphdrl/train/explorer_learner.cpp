@@ -93,13 +93,13 @@ double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, s
 }
 
 ExplorerLearner::ExplorerLearner(double ranking, Rng& rng)
-    : ranking_(ranking), parameters_(rng), adam_(parameters_.values().size(), {}) {
+    : ranking_(ranking), parameters_(rng), adam_(parameters_.values().size()) {
   network_.set_parameters(parameters_);
 }
 
 void ExplorerLearner::set_state(const ExplorerParameters& parameters, AdamState adam) {
   parameters_ = parameters;
-  adam_.set_state(std::move(adam));
+  adam_ = std::move(adam);
   network_.set_parameters(parameters_);
 }
 
@@ -122,8 +122,7 @@ double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rat
     regret_ += (label_[choice] - state.least_label) / static_cast<double>(lessons.size());
   });
   network_.backward(batch_, grad_shortfall_, grad_);
-  adam_.set_learning_rate(rate);
-  adam_.step(grad_.values(), parameters_.values());
+  adam_.step(grad_.values(), rate, parameters_.values());
   network_.set_parameters(parameters_);
   return loss;
 }

@@ -36,14 +36,14 @@ class ExplorerLearner {
   double regret() const { return regret_; }
 
   const ExplorerParameters& parameters() const { return parameters_; }
-  const AdamState& adam() const { return adam_.state(); }
+  const AdamState& adam() const { return adam_; }
   void set_state(const ExplorerParameters& parameters, AdamState adam);
 
  private:
   double ranking_;
   ExplorerParameters parameters_;
   ExplorerParameters grad_;
-  Adam adam_;
+  AdamState adam_;
   ExplorerNetwork network_;
   ExplorerScratch scratch_;
   ExplorerBatch batch_;

@@ -7,7 +7,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
-#include "graphdrl/train/paper_recipe.h"
+#include "graphdrl/train/recipe.h"
 #include "graphdrl/train/seed_runs.h"
 
 namespace graphdrl {
@@ -15,7 +15,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+void require_finished(const RunDirectory& run) {
+  const RunState state = state_of(run);
+  if (state.finished()) return;
+  throw Error({.what = state.faults.empty() ? "the run is not finished" : state.faults.front(),
+               .expected = "a finished run; to go on: graphdrl train --resume " + run.path().string(),
+               .where = run.path().string()});
+}
+
 FinishedRun read_finished_run(const RunDirectory& directory) {
+  require_finished(directory);
   FinishedRun run{.directory = directory, .options = read_config(directory.config()), .metrics = {}, .maps = {}};
   const std::string source = directory.metrics().string();
   const std::string text = read_file(source);
@@ -28,16 +37,8 @@ FinishedRun read_finished_run(const RunDirectory& directory) {
   }
   const Checkpoint checkpoint = Checkpoint::read(directory.checkpoint());
   checkpoint.require_preset(run.options.preset);
-  const std::int64_t done = checkpoint.progress().done;
   if (run.options.preset == kPaperPreset) {
     for (const World& world : worlds_of(checkpoint)) run.maps.push_back(world.name());
-  }
-  const TrainingUnits units = units_of(run.options);
-  if (done != units.count) {
-    throw Error({.what = "the run is not finished",
-                 .expected = std::to_string(units.count) + " " + units.name + "s",
-                 .got = std::to_string(done),
-                 .where = directory.path().string()});
   }
   return run;
 }

@@ -15,24 +15,9 @@ namespace {
 constexpr std::size_t kFirstLabelled = 4;
 constexpr std::size_t kMostLabelled = 6;
 
-// The start of a random walk with `ratio` mean edges to spend for each valid node.
-Lesson begin_walk(const std::shared_ptr<LessonWorld>& at, NodeId start, double ratio) {
-  const World& world = at->world;
-  Lesson walk{.at = at,
-              .visited = NodeSet(world.node_count()),
-              .position = start,
-              .spendable = world.spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
-              .scope = kExplorerScope,
-              .shortfall = {}};
-  visit(walk, {start, 0});
-  return walk;
-}
-
 // The place of the first visit that the best walk known makes; the first of all where it is not in scope.
 std::size_t best_known(const Task& task, std::span<const FirstVisit> visits, Teacher& teacher) {
-  const NodeId node = teacher.next_visit(task);
-  const auto found =
-      std::find_if(visits.begin(), visits.end(), [&](const FirstVisit& visit) { return visit.node == node; });
+  const auto found = std::ranges::find(visits, teacher.next_visit(task), &FirstVisit::node);
   return found == visits.end() ? 0 : static_cast<std::size_t>(found - visits.begin());
 }
 
@@ -53,10 +38,6 @@ std::vector<float> labels(const Task& task, std::span<const FirstVisit> visits, 
     shortfall[first] = static_cast<float>(ceiling - teacher.value(task, visits[first]));
   }
   return shortfall;
-}
-
-std::size_t least_of(std::span<const float> shortfall) {
-  return static_cast<std::size_t>(std::min_element(shortfall.begin(), shortfall.end()) - shortfall.begin());
 }
 
 }  // namespace
@@ -87,7 +68,13 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
   const auto between = [&](double least, double most) { return least + (most - least) * rng.uniform(); };
   const double ratio = chance(options.ample) ? between(options.most_budget, options.most_ample_budget)
                                              : between(options.least_budget, options.most_budget);
-  Lesson walk = begin_walk(at, start, ratio);
+  Lesson walk{.at = at,
+              .visited = NodeSet(world.node_count()),
+              .position = start,
+              .spendable = world.spending_limit(ratio * world.valid_count() * world.open().mean_cost()),
+              .scope = kExplorerScope,
+              .shortfall = {}};
+  visit(walk, {start, 0});
   if (chance(options.small_scope)) {
     walk.scope = options.least_scope +
                  static_cast<int>(rng.below(static_cast<std::uint32_t>(kExplorerScope - options.least_scope)));
@@ -114,7 +101,7 @@ std::vector<Lesson> draw_lessons(const LessonOptions& options, const ExplorerPar
       choice = rng.below(static_cast<std::uint32_t>(visits.size()));
     } else if (by_network) {
       scorer.shortfalls(batch, shortfall);
-      choice = least_of(shortfall);
+      choice = static_cast<std::size_t>(std::ranges::min_element(shortfall) - shortfall.begin());
     } else {
       choice = best_known(rest_of(walk), visits, teacher);
     }

@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/env/budget.h"
+#include "graphdrl/env/task.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 
@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 using O = TrainOptions;
 
 constexpr std::int64_t kMany = 1'000'000'000;
-constexpr std::string_view kAddedLater = "precision";  // runs of version 0.1.0 do not name it
+constexpr std::string_view kAddedLater[] = {"precision", "on_nan"};  // runs of version 0.1.0 do not name them
 
 template <typename T>
 void check_range(const std::string& flag, T value, T low, T high) {
@@ -68,6 +68,10 @@ std::vector<AnyOptionField> shared_fields() {
       field("replay_capacity", &O::replay_capacity, whole(1, kMany), "States or transitions remembered"),
       field("learning_rate", &O::learning_rate, from_to(0.0, 1e3), "Adam's; that of the explorer falls to a fiftieth"),
       field("checkpoint_every", &O::checkpoint_every, whole(1, kMany), "Rounds or episodes between checkpoints"),
+      field(
+          "on_nan", &O::on_nan, one_of({"stop", kRollback}),
+          "When a loss or a weight is not finite: stop, or rollback, which goes back to the last checkpoint and halves "
+          "the learning rate, three times at most"),
   };
 }
 
@@ -222,7 +226,8 @@ TrainOptions read_config(const std::filesystem::path& path) {
   const Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   TrainOptions options = parse_options(json, source);
   for_each_option([&](const auto& option) {
-    if (!option.is_of(options.preset) || json.contains(option.key) || option.key == kAddedLater) return;
+    if (!option.is_of(options.preset) || json.contains(option.key)) return;
+    if (std::ranges::find(kAddedLater, option.key) != std::end(kAddedLater)) return;
     throw Error({.what = "missing key " + in_quotes(option.key), .where = source});
   });
   return options;

@@ -15,6 +15,7 @@ namespace graphdrl {
 inline constexpr const char* kExplorerPreset = "explorer";
 inline constexpr const char* kPaperPreset = "paper";
 inline constexpr const char* kRandomStart = "random";
+inline constexpr const char* kRollback = "rollback";
 
 // The values, with the defaults of the explorer where both presets take an option. An explorer's train for three
 // quarters of an hour on two cores (docs/explorer.md). The paper's are the paper's numbers (section 2.2), and its
@@ -26,6 +27,7 @@ struct TrainOptions {
   std::int64_t replay_capacity = 200'000;  // paper: 100,000
   double learning_rate = 2e-3;             // paper: 1e-3
   std::int64_t checkpoint_every = 20;      // paper: 100
+  std::string on_nan = "stop";
 
   // Of the explorer.
   std::int64_t rounds = 240;

@@ -3,41 +3,46 @@
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/train/learner_source.h"
-#include "graphdrl/train/paper_td_target.h"
 
 namespace graphdrl {
 
-PaperKernelLearner::PaperKernelLearner(const PaperLearnerOptions& options, Rng& rng)
-    : options_(options),
-      online_(rng),
-      target_(online_),
-      online_tensors_(online_.tensors()),
-      grad_tensors_(grad_.tensors()),
-      adam_(PaperParameters::trainable_count(), {.learning_rate = options.learning_rate}) {
-  update();
+std::vector<float> draw_keep_scale(int rows, int width, double p, Rng& rng) {
+  std::vector<float> scale(static_cast<std::size_t>(rows) * width);
+  for (float& value : scale) value = rng.uniform() < p ? 0.0f : static_cast<float>(1 / (1 - p));
+  return scale;
+}
+
+std::vector<float> td_targets(const PaperMinibatch& batch, std::span<const float> next_q,
+                              std::span<const float> chooser, double discount) {
+  std::vector<float> targets = batch.rewards;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (batch.terminal[i] != 0) continue;
+    const std::span<const float> row = chooser.subspan(i * kActionCount, kActionCount);
+    const std::ptrdiff_t best = std::max_element(row.begin(), row.end()) - row.begin();
+    targets[i] += static_cast<float>(discount) * next_q[i * kActionCount + best];  // y [paper, eq. 5]
+  }
+  return targets;
 }
 
 void PaperKernelLearner::update() {
-  network_.set_parameters(online_);
-  target_network_.set_parameters(target_);
+  network_.set_parameters(state_.online);
+  target_network_.set_parameters(state_.target);
 }
 
 double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::span<const float> keep_scale) {
   const int graphs = batch.graphs.graph_count();
   next_q_.resize(static_cast<std::size_t>(graphs) * kActionCount);
   target_network_.q_values(batch.graphs, batch.next_x, next_q_);
-  TdBatch td{.rewards = batch.rewards, .terminal = batch.terminal, .next_q = next_q_, .chooser = next_q_};
   if (options_.double_dqn) {
     next_online_.resize(next_q_.size());
     network_.q_values(batch.graphs, batch.next_x, next_online_);
-    td.chooser = next_online_;
   }
-  const std::vector<float> targets = td_targets(td, options_.discount);
+  const std::vector<float> targets =
+      td_targets(batch, next_q_, options_.double_dqn ? next_online_ : next_q_, options_.discount);
 
   q_.resize(next_q_.size());
   network_.q_values(batch.graphs, batch.x, q_, keep_scale);
-  network_.move_statistics(batch.graphs.node_count(), online_tensors_);
+  network_.move_statistics(batch.graphs.node_count(), state_.online);
   double loss = 0;  // L(θ) [paper, eq. 5], a mean of squares
   for (int g = 0; g < graphs; ++g) {
     float* const row = q_.data() + static_cast<std::ptrdiff_t>(g) * kActionCount;
@@ -47,7 +52,7 @@ double PaperKernelLearner::compute_gradients(const PaperMinibatch& batch, std::s
     std::fill_n(row, kActionCount, 0.0f);
     row[action] = 2 * error / static_cast<float>(graphs);
   }
-  network_.backward(batch.graphs, keep_scale, q_, grad_tensors_);
+  network_.backward(batch.graphs, keep_scale, q_, grad_);
   return loss;
 }
 
@@ -55,15 +60,8 @@ void PaperKernelLearner::learn(const PaperMinibatch& batch, Rng& rng) {
   losses_.push_back(
       compute_gradients(batch, draw_keep_scale(batch.graphs.graph_count(), kHiddenWidth, options_.dropout, rng)));
   const std::size_t trainable = PaperParameters::trainable_count();
-  adam_.step(grad_.values().first(trainable), online_.values().first(trainable));
-  soft_update(online_.values(), options_.soft_update, target_.values());
-  update();
-}
-
-void PaperKernelLearner::set_state(const PaperState& state) {
-  std::ranges::copy(state.online.values(), online_.values().begin());
-  std::ranges::copy(state.target.values(), target_.values().begin());
-  adam_.set_state(state.adam);
+  state_.adam.step(grad_.values().first(trainable), options_.learning_rate, state_.online.values().first(trainable));
+  soft_update(state_.online.values(), options_.soft_update, state_.target.values());
   update();
 }
 

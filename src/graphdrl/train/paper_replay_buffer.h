@@ -1,4 +1,4 @@
-// Experience replay [paper, section 2]: the last transitions, sampled uniformly.
+// Experience replay [paper, section 2]: the last transitions, sampled uniformly, and the minibatches made of them.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "graphdrl/graph/graph.h"
+#include "graphdrl/base/random.h"
+#include "graphdrl/nn/graph_batch.h"
+#include "graphdrl/nn/paper_features.h"
 #include "graphdrl/train/checkpoint.h"
 
 namespace graphdrl {
@@ -52,5 +54,33 @@ class PaperReplayBuffer {
   std::vector<Transition> transitions_;
   std::vector<std::uint16_t> visits_;  // [size, max_nodes]
 };
+
+// B transitions, encoded. s and s' of a transition lie in the same graph.
+struct PaperMinibatch {
+  GraphBatch graphs;
+  std::vector<float> x;                // s:  [N, F]
+  std::vector<float> next_x;           // s': [N, F]
+  std::vector<std::int64_t> actions;   // [B]
+  std::vector<float> rewards;          // [B]
+  std::vector<std::uint8_t> terminal;  // [B], 0 or 1
+
+  std::vector<std::uint16_t> next_visits;  // room to build s'
+
+  void clear() {
+    graphs.clear();
+    for (auto* values : {&x, &next_x, &rewards}) values->clear();
+    actions.clear();
+    terminal.clear();
+  }
+};
+
+// Adds one transition, encoded; `encoder` is that of its world.
+void append_transition(const PaperReplayBuffer& replay, std::size_t index, const PaperFeatureEncoder& encoder,
+                       PaperMinibatch& batch);
+
+// Draws `size` transitions uniformly, with replacement, and builds their features. `encoders` are those of the worlds
+// that the transitions name. The batch's memory is used again.
+void sample_minibatch(const PaperReplayBuffer& replay, std::span<const PaperFeatureEncoder> encoders, std::int64_t size,
+                      Rng& rng, PaperMinibatch& batch);
 
 }  // namespace graphdrl

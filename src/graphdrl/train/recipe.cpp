@@ -1,8 +1,6 @@
 #include "graphdrl/train/recipe.h"
 
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/train/explorer_recipe.h"
-#include "graphdrl/train/paper_recipe.h"
 
 namespace graphdrl {
 
@@ -13,10 +11,10 @@ TrainingUnits units_of(const TrainOptions& options) {
 
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
                                     const LearnerSource& learners, std::vector<World> worlds) {
-  if (options.preset == kExplorerPreset) return std::make_unique<ExplorerRecipe>(options, rng);
+  if (options.preset == kExplorerPreset) return make_explorer_recipe(options, rng);
   if (from != nullptr) worlds = worlds_of(*from);
   if (worlds.empty()) worlds = load_worlds(options.maps);
-  return std::make_unique<PaperRecipe>(options, rng, std::move(worlds), learners);
+  return make_paper_recipe(options, rng, std::move(worlds), learners);
 }
 
 }  // namespace graphdrl

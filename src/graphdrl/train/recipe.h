@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/base/error.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/train/checkpoint.h"
-#include "graphdrl/train/learner_source.h"
 #include "graphdrl/train/options.h"
+#include "graphdrl/train/paper_learner.h"
 
 namespace graphdrl {
 
@@ -29,18 +30,27 @@ struct TrainingUnits {
 };
 TrainingUnits units_of(const TrainOptions& options);
 
+// A loss or a weight that is no finite number: what() names it and the step.
+class NotFinite : public Error {
+ public:
+  using Error::Error;
+};
+
 class Recipe {
  public:
   virtual ~Recipe() = default;
 
   // Does one more unit, or the rest of one; adds its samples. `stop` may end it early: then it gives false, and the
-  // next call goes on there.
+  // next call goes on there. Throws NotFinite of a loss.
   virtual bool run_unit(TrainingProgress& progress, const std::function<bool()>& stop) = 0;
 
   // After a unit, which is counted already: how it went, for a display …
   virtual std::string status(const TrainingProgress& progress) const = 0;
   // … and for the run's metrics; empty where none are due. Forgets what it gave.
   virtual std::vector<Metric> take_metrics(const TrainingProgress& progress) = 0;
+
+  // The name of the first tensor with a weight that is not finite; empty where there is none.
+  virtual std::string not_finite() const = 0;
 
   // Everything but the progress and the random numbers, which are the trainer's.
   virtual void save(CheckpointWriter& checkpoint) const = 0;
@@ -54,5 +64,24 @@ class Recipe {
 // options.
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
                                     const LearnerSource& learners, std::vector<World> worlds = {});
+
+// That of the preset explorer (explorer_recipe.cpp). A unit is a round of random walks, whose states search values, and
+// of learning steps on what is remembered. `stop` is asked before every walk and every learning step; a round whose
+// walks are not all drawn begins anew.
+std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng);
+
+// That of the preset paper (paper_recipe.cpp): Deep Q-learning over episodes on grid maps [paper, Algorithm 1]. A unit
+// is an episode; `stop` is asked before every step. Metrics are means over ten episodes, or fewer at the end; epsilon
+// is the last one's.
+std::unique_ptr<Recipe> make_paper_recipe(const TrainOptions& options, Rng& rng, std::vector<World> worlds,
+                                          const LearnerSource& learners);
+
+// How much its policy explores: exp(-x), x evenly spaced from 0.1 in the first episode to 3 in the last, as the paper's
+// author's code has it; one single episode has 0.1. REQUIRES: 0 <= episode < episodes.
+double paper_epsilon(std::int64_t episode, std::int64_t episodes);
+
+// The maps that its checkpoint holds: a run goes on from anywhere, whatever became of the map files. Throws Error where
+// it holds none.
+std::vector<World> worlds_of(const Checkpoint& checkpoint);
 
 }  // namespace graphdrl

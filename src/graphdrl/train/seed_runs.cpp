@@ -9,8 +9,8 @@
 #include <set>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/io/checked_json.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/json.h"
 
 namespace graphdrl {
 namespace {
@@ -71,11 +71,9 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
 
 SeedsFile read_seeds(const std::filesystem::path& folder) {
   const std::string source = seeds_file(folder).string();
-  const std::string text = read_file(source);
-  require_shallow_json(text, source);
-  Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  Json json = read_checked_json(source);
   const auto is_seed = [](const Json& seed) { return seed.is_number_unsigned(); };
-  if (!json.is_object() || !json.contains(kSeedsKey) || !json[kSeedsKey].is_array() || json[kSeedsKey].empty() ||
+  if (!json.contains(kSeedsKey) || !json[kSeedsKey].is_array() || json[kSeedsKey].empty() ||
       !std::all_of(json[kSeedsKey].begin(), json[kSeedsKey].end(), is_seed)) {
     throw Error({.what = "no list of seeds", .where = source});
   }
@@ -113,7 +111,7 @@ SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t>
   Json json = config_json(options);
   json.erase("seed");
   json[kSeedsKey] = file.seeds;
-  write_file(seeds_file(folder), json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+  write_checked_json(seeds_file(folder), json);
   return {file, folder};
 }
 

@@ -17,9 +17,15 @@ namespace graphdrl {
 
 namespace {
 
-// But for the maps: a folder may have been moved, and the checkpoint holds them.
+// But for the maps: a folder may have been moved, and the checkpoint holds them. Says nothing of a configuration that
+// is missing or damaged: the trainer mends it.
 void require_same_options(const PlannedRun& run) {
-  TrainOptions found = read_config(run.directory.config());
+  TrainOptions found;
+  try {
+    found = read_config(run.directory.config());
+  } catch (const Error&) {
+    return;
+  }
   found.maps = run.options.maps;
   if (config_json(found) == config_json(run.options)) return;
   throw Error({.what = "the folder holds a run of other options", .where = run.directory.path().string()});
@@ -64,18 +70,19 @@ void run_together(const std::vector<int>& runs, std::vector<std::unique_ptr<Lear
   }
 }
 
-bool is_begun(const PlannedRun& run) {
-  return std::filesystem::exists(run.directory.checkpoint());
-}
-
 }  // namespace
 
 SideBySide::SideBySide(std::vector<PlannedRun> runs)
-    : runs_(std::move(runs)), progress_(runs_.size()), units_(units_of(runs_.front().options)) {
+    : runs_(std::move(runs)),
+      progress_(runs_.size()),
+      finished_(runs_.size()),
+      units_(units_of(runs_.front().options)) {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    if (!is_begun(runs_[i])) continue;
+    if (!runs_[i].directory.holds_a_run()) continue;
     require_same_options(runs_[i]);
-    progress_[i] = Checkpoint::read(runs_[i].directory.checkpoint()).progress();
+    const RunState state = state_of(runs_[i].directory);
+    if (state.record) progress_[i] = state.record->progress;
+    finished_[i] = state.finished();
   }
 }
 
@@ -93,8 +100,8 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
   std::mutex mutex;
   const auto train_one = [&](int run, const LearnerSource& source) {
     TrainingProgress& progress = progress_[static_cast<std::size_t>(run)];
-    if (trained(progress) || stop()) return;
-    train(run, source, stop, [&](const TrainingProgress& now) {
+    if (finished_[run] || stop()) return;
+    finished_[run] = train(run, source, stop, [&](const TrainingProgress& now) {
       const std::lock_guard lock(mutex);
       progress = now;
       const double session_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -115,17 +122,17 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
     }
   }
   parallel_for(static_cast<int>(alone.size()), [&](int i) { train_one(alone[i], learners); });
-  return std::all_of(progress_.begin(), progress_.end(), trained);
+  return std::all_of(finished_.begin(), finished_.end(), [](char finished) { return finished != 0; });
 }
 
 // Begins a run or goes on with it.
-void SideBySide::train(int run, const LearnerSource& learners, const std::function<bool()>& stop,
+bool SideBySide::train(int run, const LearnerSource& learners, const std::function<bool()>& stop,
                        const std::function<void(const TrainingProgress&)>& tell) const {
   const PlannedRun& planned = runs_[static_cast<std::size_t>(run)];
   try {
-    const auto trainer = is_begun(planned) ? Trainer::resume(planned.directory, learners)
-                                           : Trainer::start(planned.options, planned.directory, learners);
-    trainer->run(stop, [&](const TrainingNews& news) { tell(news.progress); });
+    const auto trainer = planned.directory.holds_a_run() ? Trainer::resume(planned.directory, learners)
+                                                         : Trainer::start(planned.options, planned.directory, learners);
+    return trainer->run(stop, [&](const TrainingNews& news) { tell(news.progress); });
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {

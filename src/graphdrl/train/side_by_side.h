@@ -26,14 +26,16 @@ struct SideBySideNews {
 
 class SideBySide {
  public:
-  // Reads where the runs stand that are begun. Throws Error where a directory holds a run of other options.
+  // Reads where the runs stand that are begun, by their records. Throws Error where a directory holds a run of other
+  // options.
   // REQUIRES: at least one run; all of one preset, length and device.
   explicit SideBySide(std::vector<PlannedRun> runs);
 
   // Begins the others and goes on with all, on threads() threads, until they are trained or `stop` says so; then those
   // that are begun are saved. Where the device works for several at once, runs that differ in their seeds alone are
   // trained together. Memory: that of the trainings under way. `tell` may be called on any thread, but never twice at a
-  // time. Throws Error, as Trainer does. Gives whether all are trained.
+  // time. Throws Error, as Trainer does, also RunLocked, once the other runs are trained. Gives whether all are
+  // trained.
   bool run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell,
            const LearnerSource& learners = kCpuLearners);
 
@@ -42,12 +44,13 @@ class SideBySide {
   const TrainingUnits& units() const { return units_; }                        // of one run
 
  private:
-  void train(int run, const LearnerSource& learners, const std::function<bool()>& stop,
+  bool train(int run, const LearnerSource& learners, const std::function<bool()>& stop,
              const std::function<void(const TrainingProgress&)>& tell) const;
   std::int64_t sum(std::int64_t TrainingProgress::*member) const;
 
   std::vector<PlannedRun> runs_;
   std::vector<TrainingProgress> progress_;
+  std::vector<char> finished_;  // by their records
   TrainingUnits units_;
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "graphdrl/nn/explorer_network.h"
-#include "graphdrl/planners/annealing.h"
 #include "graphdrl/planners/baselines.h"
 
 namespace graphdrl {
@@ -21,36 +20,33 @@ constexpr int kManySteps = 1500;
 
 }  // namespace
 
-// From an order of targets, of which what can be paid for is taken.
-Teacher::Found Teacher::improve(const Targets& targets, double limit, std::vector<int> order, std::int64_t steps,
-                                double from) {
+Tour Teacher::improve(const Targets& targets, double limit, double share, double from) {
+  std::vector<int> order;
   double cost = 0;
   int last = 0;
-  std::erase_if(order, [&](int target) {
+  for (const NodeId node : best_) {
+    const int target = targets.target_of(node);
+    if (target <= 0) continue;
     const double there = cost + targets.cost(last, target);
-    if (there + targets.cost(target, targets.end()) > limit) return true;
+    if (there + targets.cost(target, targets.end()) > limit) continue;
+    order.push_back(target);
     cost = there;
     last = target;
-    return false;
-  });
-  Annealing annealing(targets, limit, rng_.next());
-  annealing.start(order, std::vector<double>(order.size() + 1, kNoLimit));
+  }
+  const std::size_t links = order.size() + 1;
+  Annealing annealing(targets, limit, rng_.next(),
+                      {.order = std::move(order), .links = std::vector<double>(links, kNoLimit)});
+  const auto steps = static_cast<std::int64_t>(share * std::clamp(steps_ * targets.end(), kFewSteps, kManySteps));
   for (std::int64_t step = 0; step < steps; ++step) {
     annealing.step(from + (1 - from) * static_cast<double>(step) / static_cast<double>(steps));
   }
-  order = annealing.best();
-  return {.order = std::move(order), .visits = annealing.best_prize(), .cost = annealing.best_cost()};
+  return annealing.best();
 }
 
-void Teacher::search(const Task& task, double steps, double from) {
+void Teacher::search(const Task& task, double share, double from) {
   targets_.clear();
   const Targets& targets = targets_.emplace_back(task);
-  std::vector<int> order;
-  for (const NodeId node : best_) {
-    if (const int target = targets.target_of(node); target > 0) order.push_back(target);
-  }
-  const double each = std::clamp(steps_ * targets.end(), kFewSteps, kManySteps);
-  const Found found = improve(targets, task.limit(), std::move(order), static_cast<std::int64_t>(steps * each), from);
+  const Tour found = improve(targets, task.limit(), share, from);
   best_.clear();
   for (const int target : found.order) best_.push_back(targets.node(target));
 }
@@ -93,15 +89,9 @@ NodeId Teacher::next_visit(const Task& task) {
 
 double Teacher::value(const Task& task, const FirstVisit& first) {
   const Targets& before = targets_.front();
-  const int target = before.target_of(first.node);
-  const Targets targets = before.after(target);
-  std::vector<int> order;
-  for (const NodeId node : best_) {
-    if (const int next = targets.target_of(node); next > 0) order.push_back(next);
-  }
-  const auto steps = std::clamp(steps_ * targets.end(), kFewSteps, kManySteps);
-  const Found found = improve(targets, task.limit() - first.cost, std::move(order), steps, kLabelFrom);
-  const double visits = 1 + found.visits;
+  const Targets targets = before.after(before.target_of(first.node));
+  const Tour found = improve(targets, task.limit() - first.cost, 1, kLabelFrom);
+  const double visits = 1 + found.prize;
   const double edges = (first.cost + found.cost) / task.view().open().mean_cost();
   return visits - kWorthOfCost * (edges - visits);
 }

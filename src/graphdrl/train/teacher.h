@@ -8,8 +8,7 @@
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/exploration.h"
 #include "graphdrl/env/task.h"
-
-#include "graphdrl/planners/targets.h"
+#include "graphdrl/planners/annealing.h"
 
 namespace graphdrl {
 
@@ -35,13 +34,9 @@ class Teacher {
   double value(const Task& task, const FirstVisit& first);
 
  private:
-  struct Found {
-    std::vector<int> order;
-    double visits;
-    double cost;
-  };
-  Found improve(const Targets& targets, double limit, std::vector<int> order, std::int64_t steps, double from);
-  void search(const Task& task, double steps, double from);
+  // Begins with what the best walk makes for, as far as it can be paid for. share: of the steps of a label's search.
+  Tour improve(const Targets& targets, double limit, double share, double from);
+  void search(const Task& task, double share, double from);
 
   int steps_;
   Rng rng_;

@@ -12,9 +12,9 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/eval/comparison.h"
-#include "graphdrl/io/ascii_map.h"
+#include "graphdrl/io/checked_json.h"
 #include "graphdrl/io/file.h"
-#include "graphdrl/io/json.h"
+#include "graphdrl/io/readers.h"
 
 namespace graphdrl {
 namespace {
@@ -73,14 +73,24 @@ std::filesystem::path tune_file(const std::filesystem::path& folder) {
   return folder / "tune.json";
 }
 
-// Writes maps of a split, none of them one that is in `taken`, which they join.
+// Writes maps of a split where they are not there yet, none of them one that is in `taken`, which they join.
 void write_maps(const std::filesystem::path& folder, Split split, int count, std::set<std::vector<bool>>& taken) {
   prepare_folder(folder);
   for (int index = 0, written = 0; written < count; ++index) {
     const World world = split_world({.family = "obstacles", .size = kSide}, split, index);
     if (!taken.insert(world.map()->blocked).second) continue;
-    write_file(folder / fmt::format("map-{:03}.txt", written++), format_ascii_map(*world.map()));
+    const std::filesystem::path file = folder / fmt::format("map-{:03}.txt", written++);
+    const std::string map = format_ascii_map(*world.map());
+    if (!std::filesystem::exists(file) || read_file(file) != map) write_file(file, map);
   }
+}
+
+// The same maps for the same options.
+void write_maps(const TuneOptions& options, const std::filesystem::path& folder) {
+  std::set<std::vector<bool>> taken;
+  for (const World& world : load_worlds({"paper"})) taken.insert(world.map()->blocked);
+  write_maps(folder / "maps" / "validation", Split::kValidation, options.validation_maps, taken);
+  write_maps(folder / "maps" / "train", Split::kTrain, options.train_maps, taken);
 }
 
 TrainOptions options_of(const TuneOptions& options, const Setting& setting, const std::filesystem::path& train_maps) {
@@ -136,29 +146,23 @@ Tuning::Tuning(TuneOptions options, std::vector<Setting> settings, std::filesyst
     : options_(std::move(options)), settings_(std::move(settings)), folder_(std::move(folder)) {}
 
 Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, const LearnerSource& learners) {
-  if (std::filesystem::exists(tune_file(folder)) || std::filesystem::exists(folder / "maps")) {
+  if (std::filesystem::exists(tune_file(folder))) {
     throw Error({.what = "the folder holds a search already",
                  .expected = "a new folder, or --resume to go on with it",
                  .where = folder.string()});
   }
   Trainer::check(options_of(options, Setting::object(), ""), learners);  // refuses what all would
   std::vector<Setting> settings = draw_settings(options.rounds.front().settings, options.seed);
-  std::set<std::vector<bool>> taken;
-  for (const World& world : load_worlds({"paper"})) taken.insert(world.map()->blocked);
-  write_maps(folder / "maps" / "validation", Split::kValidation, options.validation_maps, taken);
-  write_maps(folder / "maps" / "train", Split::kTrain, options.train_maps, taken);
-  Tuning tuning(options, std::move(settings), std::move(folder));
-  const Json json = {{"options", to_json(options)}, {"settings", tuning.settings_}};
-  write_file(tune_file(tuning.folder_), json.dump(2) + '\n');
-  return tuning;
+  prepare_folder(folder);
+  write_checked_json(tune_file(folder), {{"options", to_json(options)}, {"settings", settings}});
+  write_maps(options, folder);
+  return {options, std::move(settings), std::move(folder)};
 }
 
 Tuning Tuning::resume(std::filesystem::path folder) {
   const std::string source = tune_file(folder).string();
-  const std::string text = read_file(source);
-  require_shallow_json(text, source);
+  const Json json = read_checked_json(source);
   try {
-    const Json json = Json::parse(text);
     const Json& given = json.at("options");
     TuneOptions options{.rounds = {},
                         .episodes = given.at("episodes"),
@@ -176,6 +180,7 @@ Tuning Tuning::resume(std::filesystem::path folder) {
       throw Error({.what = "the first setting is not the paper's", .where = source});
     }
     for (const Setting& setting : settings) options_of(options, setting, folder / "maps" / "train");
+    write_maps(options, folder);  // a kill may have come between
     return {std::move(options), std::move(settings), std::move(folder)};
   } catch (const Json::exception& error) {
     throw Error(

@@ -136,9 +136,9 @@ TEST(PaperStack, TakesAndGivesStates) {
   for (int i = 0; i < 3; ++i) kernel.learn(random_minibatch(world, 4, rng), rng);
   for (const std::string& device : devices()) {
     SCOPED_TRACE(device);
-    PaperStack stack(torch::Device(device), 1);
+    const auto stack = stack_sources(device, 1);
     Rng other(6);
-    const auto learner = stack.learner(0, {}, other);
+    const auto learner = stack.front()->make(device, {}, other);
     for (int i = 0; i < 5; ++i) learner->learn(random_minibatch(world, 4, other), other);
     EXPECT_FALSE(std::ranges::equal(learner->state().online.values(), kernel.state().online.values()));
     learner->set_state(kernel.state());
@@ -164,10 +164,10 @@ TEST(PaperStack, KeepsLossesUntilTheyAreTaken) {
   const World world = grid_world("..\n..\n");
   for (const std::string& device : devices()) {
     SCOPED_TRACE(device);
-    PaperStack stack(torch::Device(device), 1);
+    const auto stack = stack_sources(device, 1);
     Rng rng(1);
     Rng same(1);
-    const auto learner = stack.learner(0, {}, rng);
+    const auto learner = stack.front()->make(device, {}, rng);
     PaperKernelLearner kernel({}, same);
     for (int i = 0; i < 70; ++i) {
       learner->learn(random_minibatch(world, 2, rng), rng);

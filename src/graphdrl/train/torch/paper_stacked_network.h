@@ -23,6 +23,25 @@ struct StackedGraphs {
   torch::Tensor node_mask;  // [S, B, n, 1] float32: 1 for nodes, 0 for padding
 };
 
+// The graphs that trainings have met, as dense matrices on a device, padded to one number of nodes.
+class KnownGraphs {
+ public:
+  // On the current stream of the device, as add().
+  explicit KnownGraphs(c10::Device device);
+
+  // Adds a graph; gives its index.
+  std::int64_t add(const Graph& graph);
+
+  std::int64_t padded_nodes() const { return adjacent_.size(1); }  // n, those of the largest
+  const torch::Tensor& adjacent() const { return adjacent_; }      // [graphs, n, n] float32, [g, to, from]: edges
+  const torch::Tensor& node_mask() const { return node_mask_; }    // [graphs, n, 1] float32: 1 for nodes, 0 for padding
+
+ private:
+  std::int64_t size_ = 0;
+  torch::Tensor adjacent_;
+  torch::Tensor node_mask_;
+};
+
 // Views of S flat buffers [S, all] of parameters and running statistics, by PyTorch's names: weights [S, …]. Each is a
 // variable of its own: with `learning`, the trainable ones are leaves.
 NamedTensors stacked_tensors(const torch::Tensor& values, bool learning);

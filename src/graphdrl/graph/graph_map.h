@@ -1,0 +1,47 @@
+// Graphs as files hold them.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graphdrl/graph/graph.h"
+#include "graphdrl/graph/point.h"
+
+namespace graphdrl {
+
+// What a file says of the walk: its budget, its start and its end, if it says any of them.
+struct GivenTask {
+  std::optional<double> budget;  // in units of cost
+  NodeId start = kNoNode;
+  NodeId end = kNoNode;
+};
+
+// All edges of a file, in its order, where some are loops or parallel, or have labels. Testers' models are like that: a
+// state machine has transitions that lead back to their state, and several from one state to another. Walks over nodes
+// never gain by such edges, so Graph does without them.
+struct Multigraph {
+  std::vector<Edge> edges;               // from a to b; in an undirected graph either way
+  std::vector<std::string> labels = {};  // [edges]; empty where no edge has one
+
+  std::int64_t loops() const {
+    return std::ranges::count_if(edges, [](const Edge& edge) { return edge.a == edge.b; });
+  }
+  // Edges beside another one between the same nodes. graph: the simple graph of these edges.
+  std::int64_t parallel_edges(const Graph& graph) const { return std::ssize(edges) - loops() - graph.edge_count(); }
+};
+
+// A graph with its obstacles.
+struct GraphMap {
+  Graph graph;
+  std::vector<bool> blocked;             // [N]
+  std::vector<std::string> labels = {};  // [N], what the file calls its nodes; empty where that is 0 … N - 1
+  std::vector<double> prizes = {};       // [N], what a first visit is worth; empty where that is 1 everywhere
+  Places places = {};                    // where they lie
+  GivenTask task = {};
+  std::shared_ptr<const Multigraph> multigraph = {};  // null where `graph` has all edges, and they have no labels
+};
+
+}  // namespace graphdrl

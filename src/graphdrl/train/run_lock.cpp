@@ -1,0 +1,99 @@
+#include "graphdrl/train/run_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace graphdrl {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kBeatEvery{10};
+
+std::string host_name() {
+  char name[256] = "localhost";
+  gethostname(name, sizeof name - 1);
+  return name;
+}
+
+std::string read_start(const Descriptor& file) {
+  char text[512];
+  const ssize_t size = pread(file.value(), text, sizeof text, 0);
+  return {text, static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
+}
+
+// Seconds since the file was last written to or beaten, by the clock of the file system.
+double age_of(const Descriptor& file) {
+  struct stat before {};
+  struct stat now {};
+  fstat(file.value(), &before);
+  futimens(file.value(), nullptr);
+  fstat(file.value(), &now);
+  const timespec times[2] = {before.st_atim, before.st_mtim};
+  futimens(file.value(), times);
+  return static_cast<double>(now.st_mtim.tv_sec - before.st_mtim.tv_sec);
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& holder, const std::string& expected) {
+  throw RunLocked({.what = "another training is at work on this run: " + (holder.empty() ? "unknown" : holder),
+                   .expected = expected,
+                   .where = path.parent_path().string()});
+}
+
+}  // namespace
+
+RunLock::RunLock(const RunDirectory& run) : path_(run.lock()) {
+  const std::string host = " on " + host_name();
+  while (true) {
+    file_ = Descriptor(open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
+    if (!file_)
+      throw Error({.what = fmt::format("cannot lock the run ({})", std::strerror(errno)), .where = path_.string()});
+    const bool locked = try_lock(file_, path_);
+    if (!locked && errno == ENOENT) continue;  // its holder has just ended
+    const std::string holder = read_start(file_);
+    if (!locked && errno == EWOULDBLOCK) refuse(path_, holder, "to wait for it");
+    const bool of_this_host = holder.empty() || (locked && holder.ends_with(host));
+    if (!of_this_host && age_of(file_) < static_cast<double>(kDeadAfter.count())) {
+      refuse(path_, holder, fmt::format("to wait {} s for a sign of life, or --break-lock", kDeadAfter.count()));
+    }
+    break;
+  }
+  const std::string own = fmt::format("process {}{}", getpid(), host);
+  if (ftruncate(file_.value(), 0) != 0 || pwrite(file_.value(), own.data(), own.size(), 0) != std::ssize(own)) {
+    throw MachineError(
+        {.what = fmt::format("cannot lock the run ({})", std::strerror(errno)), .where = path_.string()});
+  }
+}
+
+RunLock::~RunLock() {
+  unlink(path_.c_str());
+}
+
+void RunLock::beat() {
+  const auto now = Steady::now().time_since_epoch().count();
+  auto due = next_beat_.load(std::memory_order_relaxed);
+  if (now < due) return;
+  if (next_beat_.compare_exchange_strong(due, now + Steady::duration(kBeatEvery).count())) {
+    futimens(file_.value(), nullptr);
+  }
+}
+
+void break_locks(const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto break_one = [](const std::filesystem::path& path) {
+    const Descriptor file(open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));
+    if (file && try_lock(file, path)) unlink(path.c_str());
+  };
+  const std::filesystem::path name = RunDirectory("").lock();
+  for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (entry->path().filename() == name) break_one(entry->path());
+  }
+}
+
+}  // namespace graphdrl
