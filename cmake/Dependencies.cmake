@@ -33,14 +33,6 @@ target_link_libraries(graphdrl_cairo INTERFACE ${CAIRO_LIBRARY})
 find_path(XXHASH_INCLUDE_DIR xxhash.h)
 require("${XXHASH_INCLUDE_DIR}" xxHash libxxhash-dev)
 
-# Neither does cpp-httplib.
-find_path(HTTPLIB_INCLUDE_DIR httplib.h)
-find_library(HTTPLIB_LIBRARY cpp-httplib)
-require("${HTTPLIB_INCLUDE_DIR}" cpp-httplib libcpp-httplib-dev)
-add_library(graphdrl_httplib INTERFACE)
-target_include_directories(graphdrl_httplib SYSTEM INTERFACE ${HTTPLIB_INCLUDE_DIR})
-target_link_libraries(graphdrl_httplib INTERFACE ${HTTPLIB_LIBRARY})
-
 # Chart.js, for the report page.
 find_file(CHART_LIBRARY chart.min.js PATHS /usr/share/javascript/chart.js)
 require("${CHART_LIBRARY}" Chart.js libjs-chart.js)

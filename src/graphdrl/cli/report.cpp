@@ -1,6 +1,9 @@
 #include <fmt/format.h>
-#include <httplib.h>
+#include <sys/stat.h>
 
+#include <algorithm>
+#include <chrono>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -9,6 +12,7 @@
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/http/http_server.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/report_page.h"
@@ -62,43 +66,99 @@ ReportPage make_page(const ReportOptions& options, const std::optional<World>& w
   return page;
 }
 
+// What changes when a file does: all zero where there is none. Nanoseconds, since 1970.
+struct FileState {
+  std::uint64_t kind = 0, file = 0;
+  std::int64_t size = 0, written_ns = 0, changed_ns = 0;
+  bool operator==(const FileState&) const = default;
+};
+
+FileState state_of(const std::string& path) {
+  struct stat found = {};
+  if (stat(path.c_str(), &found) != 0) return {};
+  const auto ns = [](const timespec& time) { return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec; };
+  if (S_ISDIR(found.st_mode)) return {.kind = S_IFDIR};
+  return {found.st_mode & S_IFMT, found.st_ino, found.st_size, ns(found.st_mtim), ns(found.st_ctim)};
+}
+
+// The page of the inputs as they are: made anew when they have changed, at most once a second. For one thread.
+class WatchedPage {
+ public:
+  using Text = std::shared_ptr<const std::string>;
+
+  WatchedPage(const ReportOptions& options, const std::optional<World>& world)
+      : options_(options), world_(world), page_(options.title, /*watch=*/true) {}
+
+  // Both throw Error where an input cannot be read.
+  Text html() {
+    return text(html_, [](const ReportPage& page) { return page.html(); });
+  }
+  Text data() {
+    return text(data_, [](const ReportPage& page) { return page.data(); });
+  }
+
+ private:
+  static constexpr std::chrono::seconds kBetweenLooks{1};
+  // A file changed again this soon may still look the same: file systems count in steps, up to two seconds long.
+  static constexpr std::chrono::seconds kSettled{2};
+
+  template <typename Made>
+  Text text(Text& kept, const Made& made) {
+    look();
+    if (failure_) std::rethrow_exception(failure_);
+    if (!kept) kept = std::make_shared<const std::string>(made(page_));
+    return kept;
+  }
+
+  void look() {
+    if (std::chrono::steady_clock::now() < next_look_) return;
+    const std::int64_t now_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+    std::vector<FileState> states;
+    for (const std::string& input : options_.inputs) {
+      states.push_back(state_of(input));
+      if (states.back().kind == S_IFDIR) states.push_back(state_of(input + "/metrics.jsonl"));
+    }
+    if (!options_.scores.empty()) states.push_back(state_of(options_.scores));
+    if (!settled_ || states != states_) make();
+    states_ = std::move(states);
+    settled_ = std::all_of(states_.begin(), states_.end(), [&](const FileState& state) {
+      return state.changed_ns < now_ns - std::chrono::nanoseconds(kSettled).count();
+    });
+    next_look_ = std::chrono::steady_clock::now() + kBetweenLooks;
+  }
+
+  void make() {
+    html_.reset();
+    data_.reset();
+    failure_ = nullptr;
+    try {
+      page_ = make_page(options_, world_, page_.emptied());
+    } catch (const Error&) {
+      failure_ = std::current_exception();
+    }
+  }
+
+  const ReportOptions& options_;
+  const std::optional<World>& world_;
+  ReportPage page_;
+  std::exception_ptr failure_;
+  Text html_, data_;               // of page_, once asked for
+  std::vector<FileState> states_;  // that page_ was made of
+  bool settled_ = false;
+  std::chrono::steady_clock::time_point next_look_;
+};
+
 // Serves the page to this machine alone, until a signal ends the program.
 void serve(const ReportOptions& options, const std::optional<World>& world) {
-  httplib::Server server;
-  // The library's own socket options would let two programs share a port.
-  server.set_socket_options([](socket_t socket) {
-    const int yes = 1;
-    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
-  });
-  // Reads the input now, so that errors show before a page is opened, and the map is laid out once.
-  const ReportPage blank = make_page(options, world, ReportPage(options.title, /*watch=*/true)).emptied();
-  const auto answer = [&](auto content_of, const char* type) {
-    return [&options, &world, &blank, content_of, type](const httplib::Request& request, httplib::Response& response) {
-      // A page of another site whose name resolves to this machine must not read this one.
-      const std::string host = request.get_header_value("Host");
-      if (!host.starts_with("127.0.0.1:") && !host.starts_with("localhost:")) {
-        response.status = 403;
-        return;
-      }
-      response.set_header("Cache-Control", "no-store");
-      try {
-        response.set_content(content_of(make_page(options, world, blank)), type);
-      } catch (const Error& error) {
-        response.status = 500;
-        response.set_content(error.what(), "text/plain");
-      }
-    };
-  };
-  server.Get("/", answer([](const ReportPage& page) { return page.html(); }, "text/html; charset=utf-8"));
-  server.Get("/data.json", answer([](const ReportPage& page) { return page.data(); }, "application/json"));
-  const int port = options.port == 0                                ? server.bind_to_any_port("127.0.0.1")
-                   : server.bind_to_port("127.0.0.1", options.port) ? options.port
-                                                                    : -1;
-  if (port < 0) {
-    throw Error({.what = "the port cannot be used", .got = std::to_string(options.port), .where = "--port"});
-  }
-  print_text(fmt::format("watching: http://127.0.0.1:{}/  (Ctrl-C ends it)\n", port));
-  server.listen_after_bind();
+  WatchedPage page(options, world);
+  page.data();  // so that errors show before a page is opened
+  HttpServer server(options.port);
+  server.on("GET", "/",
+            [&](const HttpRequest&) { return HttpAnswer{.type = "text/html; charset=utf-8", .body = page.html()}; });
+  server.on("GET", "/data.json",
+            [&](const HttpRequest&) { return HttpAnswer{.type = "application/json", .body = page.data()}; });
+  print_text(fmt::format("watching: http://127.0.0.1:{}/  (Ctrl-C ends it)\n", server.port()));
+  server.run();
 }
 
 void report(const ReportOptions& options) {
