@@ -10,6 +10,7 @@
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/file_check.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/report_page.h"
 
@@ -115,6 +116,7 @@ void report(const ReportOptions& options) {
   if (!options.scores.empty() && options.map.empty()) {
     throw Error({.what = "scores are of the moves of plans", .expected = "--map MAP", .where = "--scores"});
   }
+  if (!options.out.empty()) check_writable(options.out);
   std::optional<World> world;
   if (!options.map.empty()) world = load_one_world(options.map, options.reading);
   if (options.watch) {
