@@ -22,7 +22,7 @@ extern "C" {
 /* As the program's exit statuses. */
 typedef enum graphdrl_status {
   GRAPHDRL_DONE = 0,
-  GRAPHDRL_FAILED = 1,   /* not the caller's fault, such as memory that ran out */
+  GRAPHDRL_FAILED = 1,   /* not the caller's fault, such as memory that ran out or a full disk */
   GRAPHDRL_BAD_INPUT = 2 /* a bad argument or file */
 } graphdrl_status;
 

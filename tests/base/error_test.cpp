@@ -20,5 +20,13 @@ TEST(InQuotes, CutsLongTexts) {
   EXPECT_EQ(in_quotes("abcdef", 3), "'abc…'");
 }
 
+TEST(Escaped, LeavesTerminalsNoCodes) {
+  EXPECT_EQ(escaped("a\033[31m\n\x7f"), "a\\x1b[31m\\x0a\\x7f");
+  EXPECT_EQ(escaped("\xC2\x9B"
+                    "31m"),
+            "\\x9b31m");  // one code in place of two characters
+  EXPECT_EQ(escaped("ü\xC2\xA0 \xC2"), "ü\xC2\xA0 \xC2");
+}
+
 }  // namespace
 }  // namespace graphdrl

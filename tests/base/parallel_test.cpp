@@ -1,12 +1,15 @@
 #include "graphdrl/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "../support.h"
 
 namespace graphdrl {
 namespace {
@@ -79,6 +82,24 @@ TEST_F(ParallelFor, GoesOnAfterAnException) {
   parallel_for(10, [&](int task) { ++runs[task]; });
   EXPECT_EQ(runs, std::vector<int>(10, 1));
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which need memory of their own
+TEST_F(ParallelFor, SaysWhereThereAreNoThreads) {
+  rlimit before{};
+  getrlimit(RLIMIT_DATA, &before);
+  rlimit tight = before;
+  tight.rlim_cur = 500 << 20;  // 1023 stacks take 4 GB
+  set_threads(1024);
+  setrlimit(RLIMIT_DATA, &tight);
+  const std::string complaint = error_of([] { parallel_for(2, [](int) {}); });
+  setrlimit(RLIMIT_DATA, &before);
+  EXPECT_NE(complaint.find("cannot make 1024 threads"), std::string::npos) << complaint;
+  EXPECT_NE(complaint.find("expected a smaller --threads"), std::string::npos) << complaint;
+  int runs = 0;  // single-threaded work needs none
+  parallel_for(1, [&](int) { ++runs; });
+  EXPECT_EQ(runs, 1);
+}
+#endif
 
 }  // namespace
 }  // namespace graphdrl

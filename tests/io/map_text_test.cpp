@@ -56,6 +56,17 @@ TEST(MapText, UnpacksGzip) {
   EXPECT_THAT(std::get<GraphMap>(named.map).labels, ElementsAre("a", "b"));
 }
 
+TEST(MapText, RefusesWhatUnpacksToFarMore) {
+  EXPECT_EQ(text_of(gzipped(std::string(16'000'000, 'x'))).text.size(), 16'000'000U);
+  const std::string bomb = gzipped(std::string(20'000'000, 'x'));
+  EXPECT_THAT(error_of([&] { text_of(bomb); }), HasSubstr("at most 16777216 bytes unpacked, or the file unpacked"));
+  const TemporaryFolder folder;  // eight cells a byte
+  write_file(folder / "bits.pbm.gz", gzipped("P4\n8000 8000\n" + std::string(8'000'000, '\0')));
+  EXPECT_THAT(error_of([&] { load_map((folder / "bits.pbm.gz").string()); }), HasSubstr("more cells than a file"));
+  write_file(folder / "bits.pbm", "P4\n8000 2200\n" + std::string(2'200'000, '\0'));
+  EXPECT_EQ(std::get<GridMap>(load_map((folder / "bits.pbm").string()).map).cols, 8000);
+}
+
 TEST(MapText, RefusesDamagedAndOtherArchives) {
   const auto complaint = [](const std::string& bytes) { return error_of([&] { text_of(bytes); }); };
   const std::string packed = gzipped("a b\n");

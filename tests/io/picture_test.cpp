@@ -57,6 +57,24 @@ TEST(Picture, RefusesWhatIsDamaged) {
   EXPECT_NE(complaint(huge), "");
 }
 
+TEST(Picture, RefusesMoreCellsThanItsBytesMayHold) {
+  const auto blank = [](int side) {
+    return format_png_map({.rows = side, .cols = side, .blocked = std::vector<bool>(std::size_t(side) * side)});
+  };
+  EXPECT_EQ(parse_png_map(blank(4000), "file").cols, 4000);
+  const std::string larger = blank(5000);
+  EXPECT_LT(larger.size(), 100'000U);
+  const std::string complaint = error_of([&] { parse_png_map(larger, "file"); });
+  EXPECT_THAT(complaint, HasSubstr("more cells than a file of this size may hold: expected at most 16777216"));
+  EXPECT_THAT(complaint, HasSubstr("--cell-pixels"));
+  EXPECT_EQ(parse_png_map(larger, "file", {.cell_pixels = 2}).cols, 2500);
+  EXPECT_NE(error_of([&] { read_picture(larger, "file"); }), "");
+  EXPECT_EQ(read_picture(larger, "file", 1.5).width, 5000);
+  std::string vast = larger;  // 14,000 by 14,000, as its header says
+  for (const int at : {16, 20}) vast.replace(at, 4, std::string("\x00\x00\x36\xb0", 4));
+  EXPECT_NE(error_of([&] { parse_png_map(vast, "file", {.cell_pixels = 100}); }), "");
+}
+
 TEST(Picture, BecomesAGrid) {
   const std::string bytes = "P2\n5 4 255\n255 255 127 255 0\n255 255 255 255 0\n128 255 0 0 0\n255 255 0 0 0\n";
   const GridMap pixels = parse_netpbm_map(bytes, "file");

@@ -128,6 +128,23 @@ TEST(Tsplib, ReadsMatricesInEveryForm) {
   EXPECT_THAT(error_of([&] { read("UPPER_ROW", "1 1e308 1e308"); }), HasSubstr("too large a number in EDGE"));
 }
 
+TEST(Tsplib, TakesNoMoreMemoryThanTheFileCanFill) {
+  const auto matrix = [](int nodes, const std::string& format) {
+    return fmt::format(
+        "TYPE : TSP\nDIMENSION : {}\nEDGE_WEIGHT_TYPE : EXPLICIT\nEDGE_WEIGHT_FORMAT : {}\n"
+        "EDGE_WEIGHT_SECTION\n",
+        nodes, format);
+  };
+  EXPECT_THAT(error_of([&] { parse(matrix(20'000, "FULL_MATRIX") + "0 1\n"); }),
+              HasSubstr("bad DIMENSION: a number of nodes from 1 to 114, for a file of this size"));
+  // Too few numbers are known before the first one is read.
+  for (const char* const format : {"FULL_MATRIX", "UPPER_ROW", "LOWER_DIAG_ROW"}) {
+    EXPECT_THAT(error_of([&] { parse(matrix(20'000, format) + std::string(20'000, ' ') + "x"); }),
+                HasSubstr("the file ends within EDGE_WEIGHT_SECTION"));
+  }
+  EXPECT_EQ(parse(matrix(3, "UPPER_ROW") + "1 2 3").graph.node_count(), 3);
+}
+
 TEST(Tsplib, SaysWhatIsWrong) {
   const std::string whole = kHeader + kPlaces + kScores + kDepot;
   const std::vector<std::pair<std::string, std::string>> cases = {

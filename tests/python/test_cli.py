@@ -569,7 +569,7 @@ def test_closed_streams_are_no_crash():
     graphdrl = shlex.quote(str(BIN / "graphdrl"))
     assert status(f"{graphdrl} evaluate --policy nearest | true; echo ${{PIPESTATUS[0]}}") == "141"
     assert status(f"{graphdrl} evaluate --fast 2>&-; echo $?") == "2"
-    assert status(f"{graphdrl} evaluate --policy nearest >/dev/full; echo $?") == "2"
+    assert status(f"{graphdrl} evaluate --policy nearest >/dev/full; echo $?") == "3"
 
 
 def test_network_policies_take_large_maps(run, trained, tmp_path):

@@ -1,5 +1,6 @@
 #include "graphdrl/base/parallel.h"
 
+#include <pthread.h>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -8,8 +9,14 @@
 
 #include <algorithm>
 #include <exception>
+#include <latch>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "graphdrl/base/error.h"
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -27,8 +34,46 @@ struct Pool {
 };
 
 int thread_count = 1;
-std::optional<Pool> pool;  // where thread_count > 1
+std::mutex pool_mutex;
+std::optional<Pool> pool;  // made by the first loop that needs it
 thread_local bool within_task = false;
+
+// Starts so many threads at once, with stacks as large as oneTBB's, and ends them. Throws MachineError where one of
+// them cannot be made: oneTBB would end the program there.
+void prove_threads(int count) {
+  std::latch all_started(1);
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, tbb::global_control::active_value(tbb::global_control::thread_stack_size));
+  const auto wait = [](void* latch) -> void* {
+    static_cast<std::latch*>(latch)->wait();
+    return nullptr;
+  };
+  std::vector<pthread_t> started;
+  started.reserve(count);
+  int error = 0;
+  while (error == 0 && std::ssize(started) < count) {
+    pthread_t thread;
+    error = pthread_create(&thread, &attributes, wait, &all_started);
+    if (error == 0) started.push_back(thread);
+  }
+  all_started.count_down();
+  for (const pthread_t thread : started) pthread_join(thread, nullptr);
+  pthread_attr_destroy(&attributes);
+  if (error == 0) return;
+  throw MachineError(
+      {.what = "cannot make " + std::to_string(count + 1) + " threads (" + std::generic_category().message(error) + ")",
+       .expected = "a smaller --threads, or more memory"});
+}
+
+Pool& ready_pool() {
+  const std::lock_guard lock(pool_mutex);
+  if (!pool) {
+    prove_threads(thread_count - 1);
+    pool.emplace(thread_count);
+  }
+  return *pool;
+}
 
 // ThreadSanitizer does not see how libtbb.so orders a loop's begin before its tasks and these before its end. These say
 // it: what comes before release(mark) comes before what follows acquire(mark).
@@ -90,7 +135,6 @@ class Loop {
 void set_threads(int threads) {
   thread_count = threads;
   pool.reset();
-  if (threads > 1) pool.emplace(threads);
 }
 
 int threads() {
@@ -110,7 +154,7 @@ void parallel_for(int count, const std::function<void(int)>& task, Schedule sche
   const auto run_range = [&](const tbb::blocked_range<int>& range) {
     for (int i = range.begin(); i < range.end(); ++i) loop.run(i);
   };
-  pool->arena.execute([&] {
+  ready_pool().arena.execute([&] {
     if (schedule == Schedule::kDynamic) {
       tbb::parallel_for(tbb::blocked_range(0, count), run_range, tbb::simple_partitioner());
     } else {

@@ -43,6 +43,8 @@ graphdrl_status guarded(const Work& work) noexcept {
   try {
     work();
     return GRAPHDRL_DONE;
+  } catch (const MachineError& error) {
+    return failed(GRAPHDRL_FAILED, error.what());
   } catch (const Error& error) {
     return failed(GRAPHDRL_BAD_INPUT, error.what());
   } catch (const std::bad_alloc&) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <functional>
 #include <memory>
 
 #include "graphdrl/base/error.h"
@@ -22,6 +23,7 @@ struct CheckOptions {
 };
 
 void check(const CheckOptions& options) {
+  for (const std::string& file : options.out) check_plan_file(file);
   const World world = load_one_world(options.map, options.reading);
   for (const std::string& file : options.out) check_plan_file(world, file);
   // Options first, then what the map says, then what the walk's file says.
@@ -32,10 +34,14 @@ void check(const CheckOptions& options) {
   Answer answer = read_plan(world, options.walk, asked);
   check_walk(answer, options.walk);
   judge(answer);
-  for (const std::string& file : options.out) write_plan(answer, file);
-  if (options.json) return print_json(plan_json(answer));
-  print_text(fmt::format("{}: a walk of {} steps on {}\n{}\n", escaped(options.walk), answer.plan.walk.size() - 1,
-                         escaped(world.name()), fmt::join(plan_summary(answer), "\n")));
+  std::vector<std::function<void()>> outputs;
+  for (const std::string& file : options.out) outputs.emplace_back([&] { write_plan(answer, file); });
+  outputs.emplace_back([&] {
+    if (options.json) return print_json(plan_json(answer));
+    print_text(fmt::format("{}: a walk of {} steps on {}\n{}\n", escaped(options.walk), answer.plan.walk.size() - 1,
+                           escaped(world.name()), fmt::join(plan_summary(answer), "\n")));
+  });
+  attempt_all(outputs);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/comparison.h"
@@ -82,6 +83,7 @@ void add_evaluate_command(CLI::App& app) {
   command.add_flag("--json", options->json, "Print one JSON document");
   add_map_options(command, options->reading);
   add_threads_option(command);
+  add_memory_limit_option(command);
   command.callback([options] { evaluate(*options); });
 }
 

@@ -6,6 +6,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/program.h"
+#include "graphdrl/io/file_check.h"
 #include "graphdrl/nn/onnx_export.h"
 #include "graphdrl/planners/registry.h"
 
@@ -22,6 +23,7 @@ void export_policy(const ExportOptions& options) {
   if (out.extension() != ".onnx") {
     throw Error({.what = "bad name of a model", .expected = "FILE.onnx", .got = in_quotes(options.out), .where = "-o"});
   }
+  check_writable(out);
   const TrainedPolicy policy = read_policy(options.policy);
   if (const auto* const explorer = std::get_if<SharedExplorer>(&policy)) {
     write_onnx(out, **explorer);

@@ -17,6 +17,7 @@
 #include "graphdrl/graph/components.h"
 #include "graphdrl/graph/search.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/file_check.h"
 #include "graphdrl/io/map_source.h"
 #include "graphdrl/io/readers.h"
 #include "graphdrl/report/layout.h"
@@ -132,6 +133,8 @@ void show_info(const MapsOptions& options) {
 }
 
 void show_map(const MapsOptions& options) {
+  if (!options.svg.empty()) check_writable(options.svg);
+  if (!options.png.empty()) check_writable(options.png);
   const std::vector<World> worlds = load_worlds({options.map}, options.reading);
   if (worlds.size() > 1 && (!options.walk.empty() || !options.svg.empty() || !options.png.empty())) {
     throw Error({.what = "a walk or a picture needs one map",
@@ -141,7 +144,7 @@ void show_map(const MapsOptions& options) {
   }
   std::string text;
   for (const World& world : worlds) {
-    std::string title = fmt::format("{}: {} valid nodes", world.name(), world.valid_count());
+    std::string title = fmt::format("{}: {} valid nodes", escaped(world.name()), world.valid_count());
     if (!options.walk.empty()) {
       Episode episode(world, {.budget = kMostSpent, .action_space = action_space_of(world)});
       follow_walk(episode, options.walk);
@@ -153,18 +156,25 @@ void show_map(const MapsOptions& options) {
     }
     if (options.svg.empty() && options.png.empty()) continue;
     const Picture picture(world, options.walk, title, {});
-    if (!options.svg.empty()) write_file(options.svg, picture.svg());
-    if (!options.png.empty()) write_file(options.png, picture.png());
+    attempt_all({[&] {
+                   if (!options.svg.empty()) write_file(options.svg, picture.svg());
+                 },
+                 [&] {
+                   if (!options.png.empty()) write_file(options.png, picture.png());
+                 },
+                 [&] { print_text(text); }});
+    return;
   }
   print_text(text);
 }
 
 void convert_map(const MapsOptions& options) {
+  check_writable(options.out);
   const NamedMap named = load_map(options.map, options.reading);
   write_file(options.out, format_map(named.map, options.out));
   const auto* const graph = std::get_if<GraphMap>(&named.map);
   const bool given = graph != nullptr && (graph->task.budget || graph->task.start != kNoNode);
-  std::string text = fmt::format("Wrote {}", options.out);
+  std::string text = fmt::format("Wrote {}", escaped(options.out));
   if (given) text += ", without the budget and the ends of the file";
   if (graph != nullptr && graph->multigraph != nullptr) {
     const auto left_out = std::ssize(graph->multigraph->edges) - graph->graph.edge_count();
@@ -212,7 +222,8 @@ void generate_maps(const GenerateOptions& options) {
     write_file(folder / fmt::format("{}-{:04}.{}", spec.name(), index, world.is_grid() ? "txt" : "json"),
                format_world(world));
   }
-  print_text(fmt::format("Wrote {} world{} to {}\n", options.count, options.count == 1 ? "" : "s", folder.string()));
+  print_text(
+      fmt::format("Wrote {} world{} to {}\n", options.count, options.count == 1 ? "" : "s", escaped(folder.string())));
 }
 
 std::string describe_families() {

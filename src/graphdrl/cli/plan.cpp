@@ -2,10 +2,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/env/load_worlds.h"
@@ -69,6 +71,7 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
 }
 
 void plan(const PlanOptions& options) {
+  for (const std::string& file : options.out) check_plan_file(file);
   const World world = load_one_world(options.map, options.reading);
   const Task task(world, asked_of(world, options.asked));
   for (const std::string& file : options.out) check_plan_file(world, file);
@@ -84,12 +87,13 @@ void plan(const PlanOptions& options) {
   const Clock clock(options.time_limit_s, &stop_flag(), &listener);
   const Answer answer = make_plan(world, task, options.request, clock);
   display.finish();
-  for (const std::string& file : options.out) write_plan(answer, file);
-  if (options.json) {
-    print_json(plan_json(answer));
-  } else {
+  std::vector<std::function<void()>> outputs;
+  for (const std::string& file : options.out) outputs.emplace_back([&] { write_plan(answer, file); });
+  outputs.emplace_back([&] {
+    if (options.json) return print_json(plan_json(answer));
     print_text(format_plan(answer, options));
-  }
+  });
+  attempt_all(outputs);
   if (stop_signal() != 0) throw CLI::RuntimeError(128 + stop_signal());
 }
 
@@ -130,6 +134,7 @@ void add_plan_command(CLI::App& app) {
       ->excludes(json);
   add_map_options(command, options->reading);
   add_threads_option(command);
+  add_memory_limit_option(command);
   command.callback([options] { plan(*options); });
 }
 

@@ -7,13 +7,16 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <system_error>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/note.h"
 #include "graphdrl/base/parallel.h"
+#include "graphdrl/cli/machine.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/report/progress.h"
 
@@ -24,10 +27,12 @@ constexpr std::size_t kLongestMessage = 800;  // characters: messages of CLI11 r
 constexpr int kJsonIndent = 2;
 constexpr double kQuietS = 1;  // before a bar shows how much of a map is read
 
-int complain(const CLI::App& app, std::string_view message, int status) {
+std::string program_name;
+
+int complain(std::string_view message, int status) {
   message = message.substr(0, message.find('\n'));
   const char* const rest = message.size() > kLongestMessage ? " …" : "";
-  print_diagnostic(fmt::format("{}: {}{}\n", app.get_name(), escaped(message.substr(0, kLongestMessage)), rest));
+  print_diagnostic(fmt::format("{}: {}{}\n", program_name, escaped(message.substr(0, kLongestMessage)), rest));
   return status;
 }
 
@@ -37,9 +42,19 @@ bool is_numbers(const Json& json) {
          std::all_of(json.begin(), json.end(), [](const Json& item) { return item.is_number() || is_numbers(item); });
 }
 
+// The JSON library leaves the second set of control characters as they are, which some terminals obey.
+std::string json_line(const Json& json) {
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = text.find('\xC2', at)) != text.npos; ++at) {
+    const auto code = static_cast<unsigned char>(text[at + 1]);
+    if (code < 0xA0) text.replace(at, 2, fmt::format("\\u{:04x}", code));
+  }
+  return text;
+}
+
 void append_json(const Json& json, int indent, std::string& text) {
   if (json.empty() || !json.is_structured()) {
-    text += json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text += json_line(json);
     return;
   }
   if (is_numbers(json)) {
@@ -54,7 +69,7 @@ void append_json(const Json& json, int indent, std::string& text) {
   for (auto item = json.begin(); item != json.end(); ++item) {
     if (item != json.begin()) text += ',';
     start_line(indent + kJsonIndent);
-    if (json.is_object()) text += Json(item.key()).dump(-1, ' ', false, Json::error_handler_t::replace) + ": ";
+    if (json.is_object()) text += json_line(item.key()) + ": ";
     append_json(*item, indent + kJsonIndent, text);
   }
   start_line(indent);
@@ -83,24 +98,45 @@ void parse(CLI::App& app, int argc, char** argv) {
 
 int run_program(CLI::App& app, int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // writing to a closed pipe fails like any other write
+  std::signal(SIGXFSZ, SIG_IGN);  // and so does writing past the limit on the size of files
   set_threads(hardware_threads());
   listen_to_notes([](const std::string& text) { print_diagnostic(escaped(text) + "\n"); });
+  program_name = app.get_name();
+  end_well_without_memory(program_name.c_str());
+  return attempt([&] { parse(app, argc, argv); });
+}
+
+int attempt(const std::function<void()>& work) {
   try {
-    parse(app, argc, argv);
+    work();
     return kExitDone;
   } catch (const CLI::RuntimeError& error) {  // a command that chose its own status
     return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    return complain(app, error.what(), kExitBadInput);
+    return complain(error.what(), kExitBadInput);
   } catch (const MachineError& error) {
-    return complain(app, error.what(), kExitMachine);
+    return complain(with_memory_limit(error.what()), kExitMachine);
   } catch (const Error& error) {
-    return complain(app, error.what(), kExitBadInput);
+    return complain(error.what(), kExitBadInput);
   } catch (const std::bad_alloc&) {
-    return complain(app, "out of memory", kExitMachine);
+    say_out_of_memory();
+    return kExitMachine;
+  } catch (const std::system_error& error) {
+    if (!is_refusal(error)) return complain(error.what(), kExitOurFault);
+    return complain(fmt::format("the machine refused a thread or memory ({})", error.what()), kExitMachine);
   } catch (const std::exception& error) {
-    return complain(app, error.what(), kExitOurFault);
+    return complain(error.what(), kExitOurFault);
   }
+}
+
+void attempt_all(const std::vector<std::function<void()>>& parts) {
+  const auto gravity = [](int status) { return status == kExitClosedPipe ? 0.5 : status; };
+  int gravest = kExitDone;
+  for (const auto& part : parts) {
+    const int status = attempt(part);
+    if (gravity(status) > gravity(gravest)) gravest = status;
+  }
+  if (gravest != kExitDone) throw CLI::RuntimeError(gravest);
 }
 
 void add_threads_option(CLI::App& command) {
@@ -191,7 +227,7 @@ void print_diagnostic(const std::string& text) {
 void print_text(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
     if (errno == EPIPE) throw CLI::RuntimeError(kExitClosedPipe);
-    throw Error({.what = "cannot write to standard output"});
+    throw MachineError({.what = std::string("cannot write to standard output (") + std::strerror(errno) + ")"});
   }
 }
 

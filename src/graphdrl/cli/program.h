@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "graphdrl/io/any_map.h"
 
@@ -18,9 +20,14 @@ inline constexpr int kExitBadInput = 2;
 inline constexpr int kExitMachine = 3;       // the machine refused: disk, memory, threads
 inline constexpr int kExitClosedPipe = 141;  // as a shell says of a program that SIGPIPE ended
 
-// Parses the arguments, which runs the chosen command's callback. Turns any exception into one line on standard error
-// and an exit status.
+// Parses the arguments, which runs the chosen command's callback; gives the exit status.
 int run_program(CLI::App& app, int argc, char** argv);
+
+// Does the work; gives the exit status. Turns any exception into one line on standard error.
+int attempt(const std::function<void()>& work);
+
+// Attempts all parts, in their order. Throws CLI::RuntimeError with the gravest status where one failed.
+void attempt_all(const std::vector<std::function<void()>>& parts);
 
 // Refuses an empty text.
 CLI::Validator not_empty();
@@ -52,8 +59,8 @@ void print_json(const Json& json);
 // Text on standard error; lost if that is closed.
 void print_diagnostic(const std::string& text);
 
-// Text on standard output. Throws Error if it cannot be written, as on a full disk. If its reader is gone, throws
-// CLI::RuntimeError, which ends the program with kExitClosedPipe and no word.
+// Text on standard output. Throws MachineError if it cannot be written, as on a full disk. If its reader is gone,
+// throws CLI::RuntimeError, which ends the program with kExitClosedPipe and no word.
 void print_text(const std::string& text);
 
 // A value or null.

@@ -14,6 +14,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/http/http_server.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/file_check.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/report_page.h"
 
@@ -175,6 +176,7 @@ void report(const ReportOptions& options) {
   if (!options.scores.empty() && options.map.empty()) {
     throw Error({.what = "scores are of the moves of plans", .expected = "--map MAP", .where = "--scores"});
   }
+  if (!options.out.empty()) check_writable(options.out);
   std::optional<World> world;
   if (!options.map.empty()) world = load_one_world(options.map, options.reading);
   if (options.watch) {

@@ -9,6 +9,7 @@
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/seed_distribution.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/file_check.h"
 #include "graphdrl/report/curve_figure.h"
 #include "graphdrl/train/finished_runs.h"
 
@@ -69,8 +70,8 @@ void write_figure(const std::filesystem::path& path, const std::vector<FinishedR
   write_file(path, canvas->finish());
 }
 
-// Puts the table between its marks in a text. Throws Error if the marks are missing.
-void write_into(const std::filesystem::path& path, const std::string& table) {
+// The text of a file with a table between its marks. Throws Error if the marks are missing.
+std::string with_table(const std::filesystem::path& path, const std::string& table) {
   const std::string text = read_file(path);
   const std::size_t begin = text.find(kBegin);
   const std::size_t end = text.find(kEnd, begin);
@@ -79,7 +80,14 @@ void write_into(const std::filesystem::path& path, const std::string& table) {
                  .expected = "a line <!-- table --> and a line <!-- end of table -->",
                  .where = path.string()});
   }
-  write_file(path, text.substr(0, begin) + std::string(kBegin) + table + text.substr(end));
+  return text.substr(0, begin) + std::string(kBegin) + table + text.substr(end);
+}
+
+void check_outputs(const ResultsOptions& options) {
+  if (!options.figure.empty()) check_writable(options.figure);
+  if (options.into.empty()) return;
+  check_writable(options.into);
+  with_table(options.into, {});
 }
 
 Json to_json(const SeedDistribution& distribution, const std::vector<FinishedRun>& runs) {
@@ -112,6 +120,7 @@ void results(const ResultsOptions& options) {
     throw Error(
         {.what = "bad name of a figure", .expected = "FILE.svg or FILE.png", .got = in_quotes(options.figure, 200)});
   }
+  check_outputs(options);
   const std::vector<FinishedRun> runs = read_finished_runs(options.runs);
   const TrainOptions& trained = runs.front().options;
   if (trained.preset != kPaperPreset) {
@@ -125,10 +134,17 @@ void results(const ResultsOptions& options) {
   for (const FinishedRun& run : runs) policies.push_back(run.directory.policy().string());
   const SeedDistribution distribution =
       distribution_over_seeds(policies, load_worlds(options.maps), runs.front().maps, Budget::parse(trained.budget));
-  if (!options.figure.empty()) write_figure(options.figure, runs);
-  if (!options.into.empty()) write_into(options.into, markdown_distribution(distribution));
-  if (options.json) return print_json(to_json(distribution, runs));
-  print_text(format_distribution(distribution));
+  attempt_all({[&] {
+                 if (!options.figure.empty()) write_figure(options.figure, runs);
+               },
+               [&] {
+                 if (options.into.empty()) return;
+                 write_file(options.into, with_table(options.into, markdown_distribution(distribution)));
+               },
+               [&] {
+                 if (options.json) return print_json(to_json(distribution, runs));
+                 print_text(format_distribution(distribution));
+               }});
 }
 
 }  // namespace

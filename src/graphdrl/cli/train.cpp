@@ -12,6 +12,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/io/checksum.h"
@@ -34,6 +35,7 @@ constexpr const char* kTorchProgram = "graphdrl-train";
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   if (arguments.front() == "train") argv.erase(argv.begin() + 1);
   argv.push_back(nullptr);
+  lift_memory_limit();
   execv(program.c_str(), argv.data());
   throw Error({.what = "training on " + device + " needs graphdrl-train beside graphdrl (" + std::strerror(errno) + ")",
                .expected = "a build with LibTorch (scripts/build --torch), or --device cpu",
@@ -138,8 +140,8 @@ class OptionFlags {
 
 // Says how to go on, and ends with the signal's status.
 [[noreturn]] void leave_stopped(const std::string& what, const std::string& run) {
-  print_diagnostic(
-      fmt::format("Stopped after {}; everything is saved. To go on:\n  graphdrl train --resume {}\n", what, run));
+  print_diagnostic(fmt::format("Stopped after {}; everything is saved. To go on:\n  graphdrl train --resume {}\n", what,
+                               escaped(run)));
   throw CLI::RuntimeError(128 + stop_signal());
 }
 
@@ -168,7 +170,7 @@ void train(Trainer& trainer, bool json) {
   if (json) return print_json(report_of(trainer.run_directory(), progress, units));
   print_text(fmt::format("Trained {} {}s, {} {}, in {:.0f} s. The policy: {}\n", progress.done, units.name,
                          progress.samples, units.samples, progress.elapsed_s,
-                         trainer.run_directory().policy().string()));
+                         escaped(trainer.run_directory().policy().string())));
 }
 
 // The same of many seeds.
@@ -204,7 +206,8 @@ void train(SeedRuns& seeds, const LearnerSource& learners, bool json) {
   }
   if (json) return print_json({{"runs", reports}});
   print_text(fmt::format("Trained {} seeds, {} {}s each. The runs: {} to {}\n", count, units.count, units.name,
-                         reports.front()["run"].get<std::string>(), reports.back()["run"].get<std::string>()));
+                         escaped(reports.front()["run"].get<std::string>()),
+                         escaped(reports.back()["run"].get<std::string>())));
 }
 
 // The parser of the arguments after `train`, and what they say.
@@ -223,6 +226,7 @@ class TrainProgram {
         ->needs(resume_);
     app_.add_flag("--json", command_.json, "Print one JSON document when done");
     add_threads_option(app_);
+    add_memory_limit_option(app_);
     app_.set_config("--config", "", "Read options from a run's config.json, or from a file of lines name = value");
     app_.config_formatter(std::make_shared<ConfigReader>());
     app_.allow_config_extras(CLI::config_extras_mode::error);

@@ -5,6 +5,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/report/progress.h"
@@ -100,7 +101,8 @@ void tune(TuneCommand command, const LearnerSource& learners) {
       learners);
   display.finish();
   if (!finished) {
-    print_diagnostic(fmt::format("Stopped; everything is saved. To go on:\n  graphdrl tune --resume {}\n", folder));
+    print_diagnostic(
+        fmt::format("Stopped; everything is saved. To go on:\n  graphdrl tune --resume {}\n", escaped(folder)));
     throw CLI::RuntimeError(128 + stop_signal());
   }
   if (command.json) return print_json(to_json(tuning));
@@ -144,6 +146,7 @@ void add_tune_command(CLI::App& app, const LearnerSource& learners) {
       ->needs(resume);
   command.add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(command);
+  add_memory_limit_option(command);
   command.callback([options, &learners] { tune(*options, learners); });
 }
 

@@ -20,7 +20,7 @@ GridMap parse_ascii_map(std::string_view text, const std::string& source) {
     throw Error({.what = "the map has too many cells for 32-bit node ids", .where = source});
   }
   GridMap map{.rows = static_cast<int>(rows.size()), .cols = static_cast<int>(cols), .blocked = {}};
-  map.blocked.reserve(rows.size() * cols);
+  map.blocked.reserve(std::min(rows.size() * cols, text.size()));
   for (std::size_t row = 0; row < rows.size(); ++row) {
     for (std::size_t col = 0; col < rows[row].size(); ++col) {
       const char c = rows[row][col];

@@ -8,6 +8,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/picture.h"
 #include "graphdrl/io/readers.h"
 
 namespace graphdrl {
@@ -75,12 +76,18 @@ void check_options(const MapFormat& format, const MapOptions& options, const std
 
 NamedMap file_map(const std::filesystem::path& path, const MapOptions& options) {
   const std::string source = path.string();
-  const std::string text = map_text(read_file(path), source, options.note);
+  std::string bytes = read_file(path);
+  const std::size_t file_bytes = bytes.size();
+  const std::string text = map_text(std::move(bytes), source, options.note);
   const MapFormat& format = format_of(text);
   check_options(format, options, source);
   const std::filesystem::path name = path.extension() == ".gz" ? path.stem() : path;
-  NamedMap named{name.stem().string(), format.read(text, source, options)};
+  NamedMap named{escaped(name.stem().string()), format.read(text, source, options)};
   shape_map(named.map, options, source);
+  const auto* const grid = std::get_if<GridMap>(&named.map);
+  // The picture of a ROS map is a file of its own, whose reader checks it.
+  if (grid != nullptr && format.name != "ros")
+    check_cells(static_cast<double>(grid->blocked.size()), file_bytes, source);
   return named;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <boost/locale/encoding_utf.hpp>
 #include <cstdint>
+#include <new>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/readers.h"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets begin UTF-8 with it
 constexpr std::size_t kMostUnpacked = std::size_t{1} << 30;
+constexpr std::size_t kUnpackedOfAnyFile = std::size_t{1} << 24;
+constexpr std::size_t kUnpackedPerByte = 100;  // text of maps shrinks to a tenth, blank maps to less
 
 struct Archive {
   std::string_view begin;
@@ -35,7 +38,8 @@ std::string gunzipped(std::string_view packed, const std::string& source) {
   std::string text;
   std::array<char, 65'536> block;
   int result = Z_OK;
-  while (result == Z_OK && text.size() <= kMostUnpacked) {
+  const std::size_t most = std::min(kMostUnpacked, std::max(kUnpackedOfAnyFile, kUnpackedPerByte * packed.size()));
+  while (result == Z_OK && text.size() <= most) {
     stream.next_out = reinterpret_cast<Bytef*>(block.data());
     stream.avail_out = block.size();
     result = inflate(&stream, Z_NO_FLUSH);
@@ -43,9 +47,12 @@ std::string gunzipped(std::string_view packed, const std::string& source) {
     if (result == Z_STREAM_END && stream.avail_in > 0) result = inflateReset(&stream);
   }
   inflateEnd(&stream);
-  if (text.size() > kMostUnpacked) {
-    throw Error({.what = "a gzipped file that is too large", .expected = "at most 1 GiB unpacked", .where = source});
+  if (text.size() > most) {
+    throw Error({.what = "a gzipped file that is too large for its size",
+                 .expected = fmt::format("at most {} bytes unpacked, or the file unpacked by gunzip", most),
+                 .where = source});
   }
+  if (result == Z_MEM_ERROR) throw std::bad_alloc();
   if (result != Z_STREAM_END) {
     throw Error({.what = "a gzipped file that is damaged or not whole", .where = source});
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/readers.h"
@@ -16,6 +17,9 @@ namespace {
 constexpr std::string_view kPngMagic = "\x89PNG\r\n\x1a\n";
 constexpr std::uint8_t kWhite = 255;
 constexpr int kHalf = 128;  // darker pixels are blocked
+
+constexpr std::int64_t kPixelsOfAnyPng = 2 * kCellsOfAnyFile;
+constexpr std::int64_t kPixelsPerByteOfPng = 2048;  // of real ones, black on white
 
 void check_size(std::int64_t width, std::int64_t height, const std::string& source) {
   if (width > 0 && height > 0 && width <= kMostPixels / height) return;
@@ -109,20 +113,41 @@ class NetpbmReader {
   double most_ = 1;
 };
 
+// Of what libpng says.
+bool is_lack_of_memory(std::string_view complaint) {
+  return complaint.ends_with("memory");
+}
+
+void check_png(double pixels, double cell_pixels, std::size_t file_bytes, const std::string& source) {
+  check_cells(pixels / (cell_pixels * cell_pixels), file_bytes, source);
+  const auto most = std::max(kPixelsOfAnyPng, kPixelsPerByteOfPng * static_cast<std::int64_t>(file_bytes));
+  if (pixels <= static_cast<double>(most)) return;
+  throw Error({.what = "a PNG file of more pixels than its size allows",
+               .expected = fmt::format("at most {}, or a PGM file", most),
+               .got = fmt::format("{:.0f}", pixels),
+               .where = source});
+}
+
 // Of 8 bits a sample. grey: colours as their brightness, transparent pixels as white.
-Raster read_png(std::string_view bytes, const std::string& source, bool grey) {
+Raster read_png(std::string_view bytes, const std::string& source, double cell_pixels, bool grey) {
   png_image image = {};
   image.version = PNG_IMAGE_VERSION;
   const auto fail = [&] {
     const std::string complaint = image.message;
     png_image_free(&image);
+    if (is_lack_of_memory(complaint)) throw std::bad_alloc();
     throw Error({.what = fmt::format("a PNG file that cannot be read ({})", escaped(complaint)), .where = source});
   };
   if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) fail();
   const std::int64_t width = image.width;
   const std::int64_t height = image.height;
-  if (width > kMostPixels / height) png_image_free(&image);
-  check_size(width, height, source);
+  try {
+    check_size(width, height, source);
+    check_png(static_cast<double>(width) * static_cast<double>(height), cell_pixels, bytes.size(), source);
+  } catch (const Error&) {
+    png_image_free(&image);
+    throw;
+  }
   image.format = grey ? PNG_FORMAT_GRAY : image.format & (PNG_FORMAT_FLAG_COLOR | PNG_FORMAT_FLAG_ALPHA);
   if (!grey) image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // samples as they are, not as light
   const auto channels = static_cast<int>(PNG_IMAGE_SAMPLE_CHANNELS(image.format));
@@ -198,14 +223,26 @@ bool is_netpbm(std::string_view bytes) {
   return numbers >= 3;
 }
 
-Raster read_picture(std::string_view bytes, const std::string& source) {
-  if (is_png(bytes)) return read_png(bytes, source, /*grey=*/false);
+void check_cells(double cells, std::size_t file_bytes, const std::string& source) {
+  const auto most = std::max(kCellsOfAnyFile, kCellsPerByte * static_cast<std::int64_t>(file_bytes));
+  if (cells <= static_cast<double>(most)) return;
+  throw Error(
+      {.what = "a grid of more cells than a file of this size may hold",
+       .expected = fmt::format("at most {}: larger ones, by --cell-pixels or --cell-size, or a file that is not "
+                               "packed",
+                               most),
+       .got = fmt::format("{:.0f}", cells),
+       .where = source});
+}
+
+Raster read_picture(std::string_view bytes, const std::string& source, double cell_pixels) {
+  if (is_png(bytes)) return read_png(bytes, source, cell_pixels, /*grey=*/false);
   if (is_netpbm(bytes)) return NetpbmReader(bytes, source).read();
   throw Error({.what = "not a picture", .expected = "PNG, PGM, PBM or PPM", .where = source});
 }
 
 GridMap parse_png_map(std::string_view bytes, const std::string& source, const MapOptions& options) {
-  return grid_of(read_png(bytes, source, /*grey=*/true), options.cell_pixels, source);
+  return grid_of(read_png(bytes, source, options.cell_pixels, /*grey=*/true), options.cell_pixels, source);
 }
 
 GridMap parse_netpbm_map(std::string_view bytes, const std::string& source, const MapOptions& options) {
@@ -221,6 +258,7 @@ std::string format_png(int width, int height, int channels, const void* samples)
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string bytes(size, '\0');
   if (png_image_write_to_memory(&image, bytes.data(), &size, 0, samples, 0, nullptr) == 0) {
+    if (is_lack_of_memory(image.message)) throw std::bad_alloc();
     throw Error({.what = fmt::format("the picture cannot be written as PNG ({})", escaped(image.message))});
   }
   bytes.resize(size);

@@ -19,9 +19,15 @@ struct Raster {
 // What a picture may hold at most, so that a small file cannot fill the memory.
 inline constexpr std::int64_t kMostPixels = 200'000'000;
 
+// Throws Error where a grid has more cells than a file of so many bytes may hold. Packed, a blank grid takes a
+// thousandth of a byte a cell, where a world takes 50 bytes: a tiny file must not ask for gigabytes.
+inline constexpr std::int64_t kCellsOfAnyFile = 4096 * 4096;
+inline constexpr std::int64_t kCellsPerByte = 256;
+void check_cells(double cells, std::size_t file_bytes, const std::string& source);
+
 // PNG, or P1 to P6 of Netpbm; channels as the file has them. Throws Error, naming `source`, on a file that is neither,
-// is damaged, or holds more than kMostPixels.
-Raster read_picture(std::string_view bytes, const std::string& source);
+// is damaged, holds more than kMostPixels, or more cells of so many pixels a side than check_cells() allows.
+Raster read_picture(std::string_view bytes, const std::string& source, double cell_pixels = 1);
 
 // A PNG of 8 bits a sample. channels: 1 grey, 3 colours. samples: [height, width, channels].
 std::string format_png(int width, int height, int channels, const void* samples);

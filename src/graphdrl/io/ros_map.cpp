@@ -18,6 +18,8 @@ namespace {
 constexpr double kOccupiedThreshold = 0.65;  // map_server's
 constexpr double kFreeThreshold = 0.196;     // likewise
 constexpr int kMostRawOccupancy = 100;
+constexpr std::size_t kLargestYaml =
+    65536;  // bytes: its values take hundreds of times as much, and such files are small
 
 enum class Mode { kTrinary, kScale, kRaw };
 
@@ -43,6 +45,12 @@ class RosMapReader {
  public:
   RosMapReader(std::string_view text, const std::string& source, const MapOptions& options)
       : source_(source), options_(options) {
+    if (text.size() > kLargestYaml) {
+      throw Error({.what = "a map of ROS that is too large",
+                   .expected = fmt::format("at most {} bytes", kLargestYaml),
+                   .got = std::to_string(text.size()),
+                   .where = source_});
+    }
     try {
       document_ = YAML::Load(std::string(text));
     } catch (const YAML::Exception& complaint) {
@@ -62,7 +70,8 @@ class RosMapReader {
     if (free > occupied) fail("free_thresh", "free_thresh is above occupied_thresh", "at most occupied_thresh");
     const Mode mode = read_mode();
     const std::filesystem::path path = picture_path();
-    const Raster picture = read_picture(read_file(path), path.string());
+    const double cell_pixels = std::max(1.0, options_.cell_size.value_or(0) / frame.cell_size);
+    const Raster picture = read_picture(read_file(path), path.string(), cell_pixels);
 
     GridMap map{.rows = picture.height, .cols = picture.width, .blocked = {}, .frame = frame};
     map.blocked.reserve(picture.samples.size() / picture.channels);
@@ -173,8 +182,7 @@ class RosMapReader {
 }  // namespace
 
 bool is_ros_map(std::string_view text) {
-  constexpr std::size_t kLargest = 65536;  // bytes: parsing is slow, and such files are small
-  text = text.substr(0, kLargest);
+  text = text.substr(0, kLargestYaml);
   for (const char* const key : {"image", "resolution"}) {
     if (text.find(key) == std::string_view::npos) return false;
   }

@@ -184,9 +184,11 @@ class TsplibReader {
       fail_here(fmt::format("{} comes twice", keyword));
     if (keyword == "DIMENSION") {
       to_number(value, keyword);
-      const auto count = parse_whole(value, 1, kMostNodes);
+      const auto most = std::min<std::int64_t>(kMostNodes, std::ssize(text_));
+      const auto count = parse_whole(value, 1, static_cast<double>(most));
       if (!count) {
-        fail_here(fmt::format("bad DIMENSION: a number of nodes from 1 to {}", kMostNodes), in_quotes(value));
+        fail_here(fmt::format("bad DIMENSION: a number of nodes from 1 to {}, for a file of this size", most),
+                  in_quotes(value));
       }
       nodes_ = static_cast<NodeId>(*count);
     } else if (keyword == "COST_LIMIT") {
@@ -253,6 +255,9 @@ class TsplibReader {
     if (!full && (!(upper || format.starts_with("LOWER_")) || !format.ends_with("_ROW"))) {
       fail_here("bad EDGE_WEIGHT_FORMAT: FULL_MATRIX, or rows of one half", in_quotes(format));
     }
+    // Each number takes a digit and a space.
+    const std::size_t numbers = full ? count * count : count * (diagonal ? count + 1 : count - 1) / 2;
+    if (text_.size() - at_ + 1 < 2 * numbers) fail_here("the file ends within EDGE_WEIGHT_SECTION");
     matrix_.assign(count * count, 0);
     for (std::size_t row = 0; row < count; ++row) {
       const std::size_t begin = full || !upper ? 0 : row + (diagonal ? 0 : 1);

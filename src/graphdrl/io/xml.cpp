@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <new>
+
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/utf8.h"
 
@@ -11,6 +13,7 @@ XmlFile::XmlFile(std::string_view text, const std::string& source) : text_(text)
   const pugi::xml_parse_result result =
       document_.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
   if (result) return;
+  if (result.status == pugi::status_out_of_memory) throw std::bad_alloc();
   throw Error(
       {.what = fmt::format("XML that is not well formed ({})", result.description()), .where = place(result.offset)});
 }

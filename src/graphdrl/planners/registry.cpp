@@ -94,8 +94,9 @@ PolicySpec parse_policy(const std::string& name) {
   if (!std::filesystem::exists(name, error)) {
     throw Error({.what = "no such policy", .expected = policy_names(), .got = in_quotes(name, 200)});
   }
-  return {
-      .kind = PolicyKind::kFile, .trained = read_policy(name), .label = std::filesystem::path(name).stem().string()};
+  return {.kind = PolicyKind::kFile,
+          .trained = read_policy(name),
+          .label = escaped(std::filesystem::path(name).stem().string())};
 }
 
 bool plans(const PolicySpec& spec) {

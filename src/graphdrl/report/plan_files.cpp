@@ -10,6 +10,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/file_check.h"
 #include "graphdrl/io/readers.h"
 #include "graphdrl/report/picture.h"
 #include "graphdrl/report/report_page.h"
@@ -237,7 +238,13 @@ std::string plan_file_endings() {
   return text;
 }
 
+void check_plan_file(const std::string& file) {
+  format_for(file);
+  check_writable(file);
+}
+
 void check_plan_file(const World& world, const std::string& file) {
+  check_plan_file(file);
   const PlanFormat& format = format_for(file);
   if (!format.needs_coordinates || has_coordinates(world)) return;
   throw Error({.what = fmt::format("{} needs coordinates, and the map has none", format.ending), .where = file});

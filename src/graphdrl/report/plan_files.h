@@ -19,9 +19,10 @@ std::vector<double> costs_so_far(const Answer& answer);
 // The walk, a node a line below a header: node ids, with the labels beside them. read_plan() reads it.
 std::string format_walk(const World& world, std::span<const NodeId> walk);
 
-// Throws Error unless the file has one of these endings: .json, .csv, .graphml, .dot, .geojson, .yaml (ROS's
-// nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h). Throws Error also if the format needs
-// coordinates and the world has none.
+// Throws Error unless the file can be written [check_writable()] and has one of these endings: .json, .csv, .graphml,
+// .dot, .geojson, .yaml (ROS's nav_msgs/Path), .svg, .anim.svg, .png or .html (report/report_page.h).
+void check_plan_file(const std::string& file);
+// Throws Error also if the format needs coordinates and the world has none.
 void check_plan_file(const World& world, const std::string& file);
 
 // Writes a plan in the format of the file's ending. Throws Error.

@@ -1,6 +1,7 @@
 #include <cairo.h>
 
 #include <cmath>
+#include <new>
 #include <numbers>
 
 #include "graphdrl/base/error.h"
@@ -11,7 +12,11 @@ namespace graphdrl {
 namespace {
 
 cairo_status_t append_bytes(void* closure, const unsigned char* data, unsigned int length) {
-  static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
+  try {
+    static_cast<std::string*>(closure)->append(reinterpret_cast<const char*>(data), length);
+  } catch (const std::bad_alloc&) {  // must not pass through C
+    return CAIRO_STATUS_NO_MEMORY;
+  }
   return CAIRO_STATUS_SUCCESS;
 }
 
@@ -22,7 +27,7 @@ class PngCanvas final : public Canvas {
                                             static_cast<int>(std::ceil(height))),
                  cairo_surface_destroy),
         context_(cairo_create(surface_.get()), cairo_destroy) {
-    check();
+    check(cairo_status(context_.get()));
     cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
     cairo_set_line_cap(context_.get(), CAIRO_LINE_CAP_ROUND);
     cairo_select_font_face(context_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
@@ -37,8 +42,8 @@ class PngCanvas final : public Canvas {
   void bitmap(const Bitmap& bitmap, Point corner, double width) override {
     const std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> image(
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, bitmap.width, bitmap.height), cairo_surface_destroy);
+    check(cairo_surface_status(image.get()));
     unsigned char* const data = cairo_image_surface_get_data(image.get());
-    if (data == nullptr) throw Error({.what = "a picture too large for PNG"});
     const int stride = cairo_image_surface_get_stride(image.get());
     for (int y = 0; y < bitmap.height; ++y) {
       auto* const row = reinterpret_cast<std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * stride);
@@ -112,16 +117,14 @@ class PngCanvas final : public Canvas {
   }
 
   std::string finish() override {
-    check();
+    check(cairo_status(context_.get()));
     std::string bytes;
-    if (cairo_surface_write_to_png_stream(surface_.get(), append_bytes, &bytes) != CAIRO_STATUS_SUCCESS) {
-      throw Error({.what = "the picture cannot be written as PNG"});
-    }
+    check(cairo_surface_write_to_png_stream(surface_.get(), append_bytes, &bytes));
     return bytes;
   }
 
   Bitmap pixels() const {
-    check();
+    check(cairo_status(context_.get()));
     cairo_surface_flush(surface_.get());
     Bitmap bitmap{.width = cairo_image_surface_get_width(surface_.get()),
                   .height = cairo_image_surface_get_height(surface_.get()),
@@ -143,9 +146,9 @@ class PngCanvas final : public Canvas {
     cairo_set_source_rgb(context_.get(), colour.red / 255.0, colour.green / 255.0, colour.blue / 255.0);
   }
 
-  void check() const {
-    const cairo_status_t status = cairo_status(context_.get());
+  static void check(cairo_status_t status) {
     if (status == CAIRO_STATUS_SUCCESS) return;
+    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
     throw Error({.what = std::string("the picture cannot be drawn (") + cairo_status_to_string(status) + ")"});
   }
 
