@@ -3,6 +3,7 @@
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/note.h"
 #include "graphdrl/base/parallel.h"
 
 namespace graphdrl::python {
@@ -14,6 +15,13 @@ NB_MODULE(_core, module) {
   module.attr("__version__") = GRAPHDRL_VERSION;
   nb::exception<Error>(module, "Error", PyExc_ValueError).doc() =
       "What a caller can get wrong: an argument, a file. A ValueError whose text is one line.";
+  nb::exception<MachineError>(module, "MachineError", PyExc_OSError).doc() =
+      "What the machine refused: disk, memory, threads. An OSError whose text is one line.";
+  // Also from threads that Python does not know.
+  listen_to_notes([](const std::string& text) {
+    const nb::gil_scoped_acquire gil;
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0) throw nb::python_error();
+  });
   module.def(
       "set_threads",
       [](int count) {

@@ -1,6 +1,6 @@
 """Visit as many nodes of a graph as a budget allows: plans with bounds, on any graph or map."""
 
-from ._core import FAMILIES, Error, State, __version__, threads
+from ._core import FAMILIES, Error, MachineError, State, __version__, threads
 from .planning import Plan, evaluate, plan, set_threads, upper_bound
 from .policies import Explorer, FirstVisits, PaperNetwork, Policy
 from .registration import register_environments
@@ -12,6 +12,7 @@ __all__ = [
     "Error",
     "Explorer",
     "FirstVisits",
+    "MachineError",
     "PaperNetwork",
     "Plan",
     "Policy",

@@ -51,7 +51,11 @@ def png_of(width, height, bits=1):
 
 def test_threads_that_cannot_be_made(run):
     tight = {"preexec_fn": limited(resource.RLIMIT_AS, 500_000 << 10)}
-    check_refused(run("graphdrl", "plan", "paper:a", "--budget", "25", "--threads", "1024", **tight), "cannot make 1024 threads", "smaller --threads")
+    check_refused(
+        run("graphdrl", "plan", "paper:a", "--budget", "25", "--threads", "1024", **tight),
+        "cannot make 1024 threads",
+        "smaller --threads",
+    )
     for arguments in (["--help"], ["--version"], ["plan", "--help"], ["maps", "info", "paper:a"]):
         assert run("graphdrl", *arguments, **tight).returncode == 0
 
@@ -70,7 +74,9 @@ def test_a_user_with_few_processes():
 
         def as_nobody(*arguments):
             command = [program, *arguments]
-            return subprocess.run(command, capture_output=True, text=True, preexec_fn=become_nobody, timeout=300, cwd="/")
+            return subprocess.run(
+                command, capture_output=True, text=True, preexec_fn=become_nobody, timeout=300, cwd="/"
+            )
 
         assert as_nobody("--help").returncode == 0
         assert as_nobody("plan", "paper:a", "--budget", "25", "--threads", "1").returncode == 0
@@ -84,7 +90,9 @@ def test_a_user_with_few_processes():
 def grid(tmp_path_factory):
     path = tmp_path_factory.mktemp("memory") / "grid.txt"
     side = 150
-    path.write_text("".join("".join("#" if (7 * r + 3 * c) % 11 == 0 else "." for c in range(side)) + "\n" for r in range(side)))
+    path.write_text(
+        "".join("".join("#" if (7 * r + 3 * c) % 11 == 0 else "." for c in range(side)) + "\n" for r in range(side))
+    )
     return path
 
 
@@ -129,7 +137,12 @@ def test_plans_within_any_memory(run, tmp_path, grid, name):
         else:
             assert process.returncode == 3 and process.stderr, (limit, process.returncode, process.stderr)
             for line in process.stderr.splitlines():  # one for each file and for the plan
-                assert line.endswith((f"out of memory: expected a larger --memory-limit, got {limit}", "a smaller --threads, or more memory"))
+                assert line.endswith(
+                    (
+                        f"out of memory: expected a larger --memory-limit, got {limit}",
+                        "a smaller --threads, or more memory",
+                    )
+                )
         for made in tmp_path.iterdir():  # whole, or not there
             assert made.read_bytes().rstrip().endswith({".png": b"IEND\xaeB`\x82", ".html": b"</html>"}[made.suffix])
             made.unlink()
@@ -138,7 +151,10 @@ def test_plans_within_any_memory(run, tmp_path, grid, name):
 
 @pytest.mark.parametrize("preset", ["paper", "explorer"])
 def test_trainings_within_any_memory(run, tmp_path, preset):
-    short = {"paper": ["--episodes", "2", "--batch-size", "8"], "explorer": ["--rounds", "1", "--walks", "4", "--largest", "5"]}
+    short = {
+        "paper": ["--episodes", "2", "--batch-size", "8"],
+        "explorer": ["--rounds", "1", "--walks", "4", "--largest", "5"],
+    }
     command = ["train", "--preset", preset, *short[preset], "--threads", "1"]
     whole = run("graphdrl", *command, "--out", tmp_path / "whole")
     assert whole.returncode == 0, whole.stderr
@@ -155,13 +171,18 @@ def test_trainings_within_any_memory(run, tmp_path, preset):
             assert f"out of memory: expected a larger --memory-limit, got {megabytes}M" in process.stderr
             if (folder / "checkpoint.safetensors").exists():  # nothing of it is half-written
                 assert run("graphdrl", "train", "--resume", folder, "--threads", "1").returncode == 0
-                assert (folder / "policy.safetensors").read_bytes() == (tmp_path / "whole/policy.safetensors").read_bytes()
+                assert (folder / "policy.safetensors").read_bytes() == (
+                    tmp_path / "whole/policy.safetensors"
+                ).read_bytes()
     assert fitted > 0
 
 
 def test_memory_limits_have_a_unit(run):
     for size in ("500M", "0.5G", "536870912", "512MiB", "1T"):
-        assert run("graphdrl", "evaluate", "--maps", "paper:a", "--policy", "nearest", "--memory-limit", size).returncode == 0
+        assert (
+            run("graphdrl", "evaluate", "--maps", "paper:a", "--policy", "nearest", "--memory-limit", size).returncode
+            == 0
+        )
     for size in ("", "x", "5X", "-1G", "0", "1e99", "G", "nan", "inf", "1" * 60):
         process = run("graphdrl", "plan", "paper:a", "--budget", "25", "--memory-limit", size)
         assert process.returncode == 2 and "500M or 2G" in process.stderr, size
@@ -182,7 +203,18 @@ def test_a_shells_limit_stays(run, tmp_path):
 def test_outputs_are_tried_before_the_work(run, tmp_path):
     (tmp_path / "taken.json").mkdir()
     (tmp_path / "old.csv").write_text("old")
-    long = ["plan", "paper:a", "--budget", "25", "--time-limit", "1000", "--policy", "search", "--iterations", "2000000000"]
+    long = [
+        "plan",
+        "paper:a",
+        "--budget",
+        "25",
+        "--time-limit",
+        "1000",
+        "--policy",
+        "search",
+        "--iterations",
+        "2000000000",
+    ]
     for bad in ("missing/x.json", "taken.json", "x.unknown", "n" * 300 + ".json", "old.csv/x.json"):
         process = run("graphdrl", *long, "--out", "old.csv", "--out", bad, cwd=tmp_path)
         assert process.returncode == 2 and process.stdout == "" and len(process.stderr.splitlines()) == 1
@@ -198,7 +230,9 @@ def test_outputs_are_tried_before_the_work(run, tmp_path):
         ["maps", "show", "missing.txt", "--png", "missing/x.png"],
     ):
         process = run("graphdrl", *arguments, cwd=tmp_path)
-        assert process.returncode == 2 and ("missing/x" in process.stderr or "no place" in process.stderr), process.stderr
+        assert process.returncode == 2 and (
+            "missing/x" in process.stderr or "no place" in process.stderr
+        ), process.stderr
     assert sorted(os.listdir(tmp_path)) == ["old.csv", "taken.json"] and (tmp_path / "old.csv").read_text() == "old"
 
 
@@ -215,9 +249,11 @@ def test_a_plan_is_not_lost_where_a_file_cannot_be_written(run, tmp_path):
 
 
 def test_a_full_standard_output(tmp_path):
-    for arguments in (["--help"], ["plan", "paper:a", "--budget", "25", "--out", tmp_path / "plan.json"], ["maps", "info", "paper"]):
+    plan = ["plan", "paper:a", "--budget", "25", "--out", tmp_path / "plan.json"]
+    for arguments in (["--help"], plan, ["maps", "info", "paper"]):
         with open("/dev/full", "w") as full:
-            process = subprocess.run([BIN / "graphdrl", *arguments], stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+            command = [BIN / "graphdrl", *arguments]
+            process = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
         check_refused(process, "cannot write to standard output", "No space left")
     assert json.loads((tmp_path / "plan.json").read_text())["visited"] > 0
 
@@ -288,11 +324,15 @@ def test_small_files_ask_for_little_memory(run, tmp_path):
         "claims.graph": b"900000000 1\n2\n1\n",
         "claims.map": b"type octile\nheight 40000\nwidth 50000\nmap\n..\n",
         "team.txt": b"n 100000\nm 1\ntmax 9\n0 0 1\n",
-        "claims.npy": b"\x93NUMPY\x01\0v\0" + b"{'descr': '|u1', 'fortran_order': False, 'shape': (20000, 20000), }".ljust(117) + b"\n",
+        "claims.npy": b"\x93NUMPY\x01\0v\0"
+        + b"{'descr': '|u1', 'fortran_order': False, 'shape': (20000, 20000), }".ljust(117)
+        + b"\n",
         "ragged.txt": b"." * 40_000 + b"\n" * 40_000,
         "deep.json": b"[" * 1_000_000,
         "alias.yaml": b"image: a.png\nresolution: 1\na: &a [x,x,x,x,x,x,x,x,x]\n"
-        + b"".join(b"%c: &%c [%s]\n" % (n + 1, n + 1, b",".join([b"*%c" % n] * 9)) for n in range(ord("a"), ord("j"))),
+        + b"".join(
+            b"%c: &%c [%s]\n" % (n + 1, n + 1, b",".join([b"*%c" % n] * 9)) for n in range(ord("a"), ord("j"))
+        ),
         "long.yaml": b"image: a.png\nresolution: 1\nx: [" + b"[]," * 1_000_000 + b"]\n",
     }
     for name, content in files.items():

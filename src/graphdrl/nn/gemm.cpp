@@ -37,8 +37,8 @@ void tell_write(void* address, std::size_t size) {
 }
 #else
 constexpr bool kSanitized = false;
-void tell_read(const void*, std::size_t) {}
-void tell_write(void*, std::size_t) {}
+inline void tell_read(const void*, std::size_t) {}
+inline void tell_write(void*, std::size_t) {}
 #endif
 
 // Tells the sanitizer what a kernel accesses, row by row. GCC builds the kernels without it: with each access
