@@ -241,7 +241,6 @@ def bad_inputs(tmp_path, policy):
         (tmp_path / name).mkdir()
         shutil.copy(config, tmp_path / name / "config.json")
     write_safetensors_metadata(tmp_path / "older" / "checkpoint.safetensors", {"progress": '{"episode": 25}'})
-    shutil.copy(policy.parent / "checkpoint.safetensors", tmp_path / "deep")
     (tmp_path / "file").write_text("")
     graph = {"nodes": [{"id": 0}, {"id": 1}], "links": [{"source": 0, "target": 1, "weight": 2}]}
     (tmp_path / "graph.json").write_text(json.dumps(graph))
@@ -357,7 +356,7 @@ def bad_inputs(tmp_path, policy):
         (["train", "--resume", ""], "--resume"),
         (["train", "--seeds", "2-1"], "--seeds: bad seeds"),
         (["train", "--maps", "no-map", "--seeds", "1-2", "--out", tmp_path / "new"], "no such map"),
-        (["results", tmp_path / "nothing"], "cannot read the file"),
+        (["results", tmp_path / "nothing"], "there is no run"),
         (["results", policy.parent, "--figure", "curves.gif"], "FILE.svg or FILE.png"),
         (["results", policy.parent, "--into", tmp_path / "nothing.md"], "cannot read the file"),
         (["results"], "runs is required"),
@@ -399,14 +398,14 @@ def bad_inputs(tmp_path, policy):
         (["train", "--maps", tmp_path / "strange.txt", "--out", tmp_path / "new"], "strange character"),
         (["train", "--out", tmp_path / "file" / "run"], "cannot create the folder"),
         (["train", "--out", policy.parent], "holds a run already"),
-        (["train", "--resume", tmp_path / "nothing"], "cannot read the file"),
+        (["train", "--resume", tmp_path / "nothing"], "there is no run to go on with"),
         (["train", "--resume", policy.parent, "--seed", "3"], "--seed does not go with --resume"),
         (["train", "--config", tmp_path / "config.json", "--out", tmp_path / "new"], "speed"),
         (["train", "--config", tmp_path / "broken.json", "--out", tmp_path / "new"], "not valid JSON"),
         (["train", "--config", tmp_path / "no.json", "--out", tmp_path / "new"], "no.json"),
         (["train", "--config", tmp_path / "deep.json", "--out", tmp_path / "new"], "nested too deeply"),
         (["train", "--config", tmp_path / "list.json", "--out", tmp_path / "new"], "not able to parse [[["),
-        (["train", "--resume", tmp_path / "deep"], "nested too deeply"),
+        (["train", "--resume", tmp_path / "deep"], "the run cannot be gone on with"),
         (["train", "--resume", tmp_path / "older"], "begin anew"),
         (["train", "--device", "cuda", "--out", tmp_path / "new"], "cuda"),
     ]

@@ -9,6 +9,7 @@
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/comparison.h"
+#include "graphdrl/io/checksum.h"
 #include "train/training.h"
 
 namespace graphdrl {
@@ -122,7 +123,25 @@ TEST(Tuning, RefusesFilesThatAreNone) {
   std::string odd = whole;
   odd.replace(odd.find("\"learning_rate\": "), 16, "\"learning_speed\":");
   write_file(file, odd);
+  EXPECT_THAT(error_of([&] { Tuning::resume(folder / "tune"); }), HasSubstr("the file is damaged"));
+  auto older = nlohmann::ordered_json::parse(odd);  // of before there were checksums
+  older.erase("layout");
+  older.erase(kChecksumKey);
+  write_file(file, older.dump());
   EXPECT_THAT(error_of([&] { Tuning::resume(folder / "tune"); }), HasSubstr("learning_speed"));
+}
+
+// A kill may come between the plan of a search and its maps.
+TEST(Tuning, WritesMapsThatAreMissing) {
+  const TemporaryFolder folder;
+  Tuning::start(small(), folder / "tune");
+  const std::filesystem::path maps = folder / "tune" / "maps";
+  const std::string first = read_file(maps / "validation" / "map-000.txt");
+  std::filesystem::remove_all(maps / "train");
+  write_file(maps / "validation" / "map-000.txt", ".");
+  EXPECT_EQ(error_of([&] { Tuning::resume(folder / "tune"); }), "");
+  EXPECT_EQ(read_file(maps / "validation" / "map-000.txt"), first);
+  EXPECT_TRUE(std::filesystem::exists(maps / "train" / "map-000.txt"));
 }
 
 }  // namespace

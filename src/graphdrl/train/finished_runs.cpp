@@ -16,6 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 void require_finished(const RunDirectory& run) {
+  if (!run.holds_a_run()) throw Error({.what = "there is no run", .where = run.path().string()});
   const RunState state = state_of(run);
   if (state.finished()) return;
   throw Error({.what = state.faults.empty() ? "the run is not finished" : state.faults.front(),
