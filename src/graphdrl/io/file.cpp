@@ -23,7 +23,7 @@ constexpr std::string_view kTemporaryEnd = ".tmp";
 constexpr int kMostLinks = 40;  // that lead to one another, as in Linux
 
 bool is_of_machine(int error_number) {
-  for (const int one : {ENOSPC, EDQUOT, EIO, EROFS, ENOMEM, EMFILE, ENFILE, ENOLCK}) {
+  for (const int one : {ENOSPC, EDQUOT, EFBIG, EIO, EROFS, ENOMEM, EMFILE, ENFILE, ENOLCK}) {
     if (error_number == one) return true;
   }
   return false;

@@ -135,6 +135,10 @@ bool SideBySide::train(int run, const LearnerSource& learners, const std::functi
     return trainer->run(stop, [&](const TrainingNews& news) { tell(news.progress); });
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {  // of the machine, as the next
+    throw;
+  } catch (const std::system_error&) {
+    throw;
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{}: {}", planned.directory.path().string(), error.what()));
   }
