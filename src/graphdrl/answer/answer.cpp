@@ -23,7 +23,7 @@ constexpr double kCutWork = 1e7;
 constexpr double kBranchWork = 2e6;
 
 PolicySpec spec_of(const PlanRequest& request) {
-  const PolicySpec spec = parse_policy(request.policy);
+  PolicySpec spec = parse_policy(request.policy);
   if (!request.iterations) return spec;
   if (spec.kind != PolicyKind::kSearch) {
     throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(request.policy, 200)});

@@ -162,8 +162,9 @@ std::string zsh_completion(const Command& program) {
       const std::vector<std::string> choices = choices_of(*option);
       const std::string what = choices.empty() ? "_files" : fmt::format("({})", fmt::join(choices, " "));
       for (const std::string& name : names_of(*option)) {
-        const std::string spec = fmt::format("{}{}[{}]{}", option->get_expected_max() > 1 ? "*" : "", name,
-                                             zsh_text(help_of(*option)), value.empty() ? "" : ':' + value + ':' + what);
+        const std::string spec =
+            fmt::format("{}{}[{}]{}", option->get_expected_max() > 1 ? "*" : "", name, zsh_text(help_of(*option)),
+                        value.empty() ? "" : fmt::format(":{}:{}", value, what));
         text += " \\\n    " + shell_quoted(spec);
       }
     }

@@ -57,8 +57,8 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
   if (options.walk) return as_comments(text + length + '\n') + format_walk(world, walk);
   Screen screen = screen_of(stdout);
   if (!world.has_cells() && std::ssize(walk) <= screen.columns) {
-    std::vector<std::string> names;
-    for (const NodeId node : walk) names.push_back(escaped(node_name(world, node)));
+    std::vector<std::string> names(walk.size());
+    std::ranges::transform(walk, names.begin(), [&](NodeId node) { return escaped(node_name(world, node)); });
     const std::string line = fmt::format("{}: {}", length, fmt::join(names, ", "));
     if (std::ssize(line) <= screen.columns) return text + line + '\n';
   }

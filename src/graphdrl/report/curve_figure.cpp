@@ -35,8 +35,8 @@ struct Axes {
   }
 
   std::vector<Point> at(const std::vector<Point>& values) const {
-    std::vector<Point> points;
-    for (const Point value : values) points.push_back(at(value));
+    std::vector<Point> points(values.size());
+    std::ranges::transform(values, points.begin(), [&](Point value) { return at(value); });
     return points;
   }
 
