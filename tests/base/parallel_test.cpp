@@ -59,17 +59,21 @@ TEST_F(ParallelFor, RunsInOrderOnTheCallersThreadWithinATask) {
   EXPECT_EQ(order, std::vector<std::vector<int>>(20, {0, 1, 2, 0, 1, 2}));
 }
 
-TEST_F(ParallelFor, HandsTheFirstExceptionToTheCaller) {
+TEST_F(ParallelFor, HandsTheFirstExceptionToTheCallerOnceAllTasksRan) {
+  std::atomic<int> done;
   for (const int count : {1, 4}) {
     set_threads(count);
     for (int repeat = 0; repeat < 50; ++repeat) {
       try {
-        parallel_for(100, [](int task) {
+        done = 0;
+        parallel_for(100, [&](int task) {
+          ++done;
           if (task % 10 == 7) throw std::runtime_error(std::to_string(task));
         });
         FAIL() << "no exception";
       } catch (const std::runtime_error& error) {
         EXPECT_STREQ(error.what(), "7");
+        EXPECT_EQ(done, 100);
       }
     }
   }

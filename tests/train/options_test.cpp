@@ -56,8 +56,8 @@ TEST(TrainOptions, SurviveTheConfigurationFile) {
     TrainOptions options = default_options(preset);
     options.learning_rate = 0.1 + 0.2;
     options.seed = 1'234'567'890'123'456'789;
-    write_config(folder / "c", options);
-    write_config(folder / "again", read_config(folder / "c"));
+    write_file(folder / "c", config_text(options));
+    write_file(folder / "again", config_text(read_config(folder / "c")));
     EXPECT_EQ(read_file(folder / "c"), read_file(folder / "again"));
     EXPECT_EQ(read_config(folder / "c").learning_rate, options.learning_rate);
     EXPECT_EQ(read_config(folder / "c").seed, options.seed);
@@ -66,7 +66,7 @@ TEST(TrainOptions, SurviveTheConfigurationFile) {
 
 TEST(TrainOptions, OfABadConfigurationFileAreRefused) {
   const TemporaryFolder folder;
-  write_config(folder / "good", default_options(kPaperPreset));
+  write_file(folder / "good", config_text(default_options(kPaperPreset)));
   const std::string good = read_file(folder / "good");
   const auto error_with = [&](const std::string& text) {
     write_file(folder / "c", text);

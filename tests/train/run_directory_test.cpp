@@ -138,6 +138,34 @@ TEST_F(FinishedRunFiles, BeginAnewFromTheConfigurationAlone) {
   EXPECT_TRUE(now("metrics.jsonl") == content_["metrics.jsonl"]);
 }
 
+// What others do to a run's files while it is trained.
+TEST(RunFiles, AreUndoneWhatOthersDoToThem) {
+  const TemporaryFolder folder;
+  const RunDirectory run(folder / "run");
+  const Bytes whole = train_in(folder / "whole", short_paper());
+  const auto trainer = Trainer::start(short_paper(), run);
+  const std::string config = read_file(run.config());
+  trainer->run([] { return false; },
+               [&](const TrainingNews& news) {
+                 if (news.progress.done != 3) return;
+                 write_file(run.config(), "{}");
+                 std::filesystem::remove(run.metrics());
+               });
+  EXPECT_TRUE(bytes_of(run) == whole);
+  EXPECT_EQ(read_file(run.config()), config);
+  EXPECT_TRUE(state_of(run).finished());
+}
+
+TEST(RunLock, IsMissedBeforeTheNextSave) {
+  const TemporaryFolder folder;
+  const RunDirectory run(folder / "run");
+  const auto trainer = Trainer::start(short_paper(), run);
+  std::filesystem::remove(run.lock());
+  const RunLock another(run);
+  EXPECT_THROW(train(*trainer), RunLocked);
+  EXPECT_EQ(Checkpoint::read(run.checkpoint()).progress().done, 0);
+}
+
 TEST(RunLock, KeepsOthersOut) {
   const TemporaryFolder folder;
   const RunDirectory run(folder / "run");

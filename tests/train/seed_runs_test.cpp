@@ -148,7 +148,30 @@ TEST(SeedRuns, TakeNoOtherRunForTheirs) {
   EXPECT_FALSE(SeedRuns::are_in(folder / "all"));
   SeedRuns::start(short_paper(), {1, 3}, folder / "all");
   Trainer::start(other, SeedRuns::run_directory_in(folder / "all", 3));
+  EXPECT_THAT(error_of([&] { SeedRuns::resume(folder / "all").trainings().run(kNever, kSilent); }),
+              HasSubstr("of other options"));
+  EXPECT_TRUE(train(*Trainer::resume(SeedRuns::run_directory_in(folder / "all", 3))));
   EXPECT_THAT(error_of([&] { SeedRuns::resume(folder / "all"); }), HasSubstr("of other options"));
+}
+
+// With one thread, too, one run that cannot go on keeps no other from it.
+TEST(SeedRuns, GoOnBesideOneThatIsLocked) {
+  const TemporaryFolder folder;
+  SeedRuns runs = SeedRuns::start(short_paper(), {1, 2}, folder / "all");
+  std::filesystem::create_directory(folder / "all/seed-1");
+  const RunLock held(SeedRuns::run_directory_in(folder / "all", 1));
+  EXPECT_THROW(runs.trainings().run(kNever, kSilent), RunLocked);
+  EXPECT_TRUE(state_of(SeedRuns::run_directory_in(folder / "all", 2)).finished());
+  EXPECT_FALSE(state_of(SeedRuns::run_directory_in(folder / "all", 1)).finished());
+}
+
+TEST(SeedRuns, ShareNoFolderWithASingleRun) {
+  const TemporaryFolder folder;
+  Trainer::start(short_paper(), RunDirectory(folder / "one"));
+  EXPECT_THAT(error_of([&] {
+                SeedRuns::start(short_paper(), {1, 2}, folder / "one");
+              }),
+              HasSubstr("holds a run already"));
 }
 
 TEST(SeedRuns, RefuseFoldersThatAreNone) {

@@ -18,14 +18,18 @@ std::string one_line(const ErrorParts& parts) {
 
 std::string escaped(std::string_view text) {
   std::string result;
+  int rest = 0;  // bytes that a character of UTF-8 still has
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
+    const bool continues = rest > 0 && byte >= 0x80 && byte < 0xC0;
+    rest = continues ? rest - 1 : byte >= 0xF0 ? 3 : byte >= 0xE0 ? 2 : byte >= 0xC0 ? 1 : 0;
     const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
-    if (byte < 0x20 || byte == 0x7f) {
+    if (byte < 0x20 || byte == 0x7f || (byte >= 0x80 && byte < 0xA0 && !continues)) {
       result += fmt::format("\\x{:02x}", byte);
     } else if (byte == 0xC2 && next >= 0x80 && next < 0xA0) {  // the second set of control characters, in UTF-8
       result += fmt::format("\\x{:02x}", next);
       ++i;
+      rest = 0;
     } else {
       result += text[i];
     }

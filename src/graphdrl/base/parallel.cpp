@@ -147,7 +147,15 @@ int hardware_threads() {
 
 void parallel_for(int count, const std::function<void(int)>& task, Schedule schedule) {
   if (thread_count == 1 || count <= 1 || within_task) {
-    for (int i = 0; i < count; ++i) task(i);
+    std::exception_ptr failure;
+    for (int i = 0; i < count; ++i) {
+      try {
+        task(i);
+      } catch (...) {
+        if (!failure) failure = std::current_exception();
+      }
+    }
+    if (failure) std::rethrow_exception(failure);
     return;
   }
   Loop loop(task);

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -121,6 +122,8 @@ int attempt(const std::function<void()>& work) {
   } catch (const std::bad_alloc&) {
     say_out_of_memory();
     return kExitMachine;
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain(fmt::format("{} ({})", error.path1().string(), error.code().message()), kExitBadInput);
   } catch (const std::system_error& error) {
     if (!is_refusal(error)) return complain(error.what(), kExitOurFault);
     return complain(fmt::format("the machine refused a thread or memory ({})", error.what()), kExitMachine);

@@ -38,7 +38,13 @@ OrderedJson read_checked_json(const std::filesystem::path& path) {
   if (const auto found = object.find(kChecksumKey); found != object.end()) {
     const OrderedJson expected = *found;
     object.erase(found);
-    if (expected == sum_of(object) && object.erase(kDocumentLayoutKey) > 0) return object;
+    if (expected == sum_of(object)) {
+      if (object.value(kDocumentLayoutKey, 0) != kDocumentLayout) {
+        throw Error({.what = "a document of another version of graphdrl", .where = source});
+      }
+      object.erase(kDocumentLayoutKey);
+      return object;
+    }
   } else if (!object.contains(kDocumentLayoutKey)) {
     note(source + ": no checksum: whether the file is undamaged cannot be told");
     return object;

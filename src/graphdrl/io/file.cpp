@@ -29,16 +29,6 @@ bool is_of_machine(int error_number) {
   return false;
 }
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error_number) {
-  const ErrorParts parts{.what = what + " (" + std::strerror(error_number) + ")", .where = path.string()};
-  if (is_of_machine(error_number)) throw MachineError(parts);
-  throw Error(parts);
-}
-
-std::filesystem::path folder_of(const std::filesystem::path& path) {
-  return path.has_parent_path() ? path.parent_path() : ".";
-}
-
 // Gives 0, or the number of what failed.
 int write_all(int descriptor, std::string_view content) {
   while (!content.empty()) {
@@ -55,18 +45,6 @@ int sync_folder(const std::filesystem::path& folder) {
   if (!descriptor) return errno == EACCES ? 0 : errno;  // a folder to write into, not to read
   if (file_system().fsync(descriptor.value()) == 0) return 0;
   return errno == EINVAL || errno == ENOTSUP ? 0 : errno;  // not every file system syncs folders
-}
-
-// Where writing to a path leads, over links whose end need not be there.
-std::filesystem::path end_of_links(std::filesystem::path path) {
-  std::error_code error;
-  for (int links = 0; std::filesystem::is_symlink(path, error); ++links) {
-    if (links == kMostLinks) fail(path, "cannot write the file", ELOOP);
-    const std::filesystem::path target = std::filesystem::read_symlink(path, error);
-    if (error) fail(path, "cannot write the file", error.value());
-    path = folder_of(path) / target;
-  }
-  return path;
 }
 
 bool is_temporary(const std::string& name) {
@@ -130,7 +108,7 @@ class Temporary {
   [[noreturn]] void fail_now(int error_number) {
     if (file_ && !gone_) file_system().unlink(path_.c_str());
     gone_ = true;
-    fail(target_, "cannot write the file", error_number);
+    fail_file(target_, "cannot write the file", error_number);
   }
 
   std::filesystem::path target_;
@@ -149,25 +127,46 @@ void write_file(const std::filesystem::path& given, std::string_view content, co
   Temporary file(path);
   file.write(content);
   if (previous != nullptr && file_system().rename(path.c_str(), previous->c_str()) != 0 && errno != ENOENT) {
-    fail(*previous, "cannot write the file", errno);
+    fail_file(*previous, "cannot write the file", errno);
   }
   file.move_to_target();
 }
 
 }  // namespace
 
+void fail_file(const std::filesystem::path& path, const std::string& what, int error_number) {
+  const ErrorParts parts{.what = what + " (" + std::strerror(error_number) + ")", .where = path.string()};
+  if (is_of_machine(error_number)) throw MachineError(parts);
+  throw Error(parts);
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+std::filesystem::path end_of_links(std::filesystem::path path) {
+  std::error_code error;
+  for (int links = 0; std::filesystem::is_symlink(path, error); ++links) {
+    if (links == kMostLinks) fail_file(path, "cannot write the file", ELOOP);
+    const std::filesystem::path target = std::filesystem::read_symlink(path, error);
+    if (error) fail_file(path, "cannot write the file", error.value());
+    path = folder_of(path) / target;
+  }
+  return path;
+}
+
 std::string read_file(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) fail(path, "cannot read the file", EISDIR);
+  if (std::filesystem::is_directory(path, ignored)) fail_file(path, "cannot read the file", EISDIR);
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) fail(path, "cannot read the file", errno);
+  if (!stream) fail_file(path, "cannot read the file", errno);
   std::string content;
   if (const auto size = std::filesystem::file_size(path, ignored); !ignored) content.reserve(size);
   char block[65'536];
   while (stream.read(block, sizeof block) || stream.gcount() > 0) {
     content.append(block, static_cast<std::size_t>(stream.gcount()));
   }
-  if (stream.bad() || !stream.eof()) fail(path, "cannot read the file", EIO);
+  if (stream.bad() || !stream.eof()) fail_file(path, "cannot read the file", EIO);
   return content;
 }
 
@@ -188,31 +187,31 @@ void prepare_folder(const std::filesystem::path& folder) {
     std::error_code error;
     if (name.empty() || std::filesystem::is_directory(part, error)) continue;
     if (file_system().mkdir(part.c_str(), 0777) != 0 && errno != EEXIST) {
-      fail(folder, "cannot create the folder", errno);
+      fail_file(folder, "cannot create the folder", errno);
     }
-    if (!std::filesystem::is_directory(part, error)) fail(folder, "cannot create the folder", ENOTDIR);
-    if (const int error_number = sync_folder(parent)) fail(folder, "cannot create the folder", error_number);
+    if (!std::filesystem::is_directory(part, error)) fail_file(folder, "cannot create the folder", ENOTDIR);
+    if (const int error_number = sync_folder(parent)) fail_file(folder, "cannot create the folder", error_number);
   }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) fail(folder, "cannot write into the folder", errno);
+  if (access(folder.c_str(), W_OK | X_OK) != 0) fail_file(folder, "cannot write into the folder", errno);
 }
 
 AppendedFile::AppendedFile(std::filesystem::path path)
     : path_(std::move(path)), file_(file_system().open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666)) {
   struct stat now {};
-  if (!file_ || fstat(file_.value(), &now) != 0) fail(path_, "cannot write the file", errno);
+  if (!file_ || fstat(file_.value(), &now) != 0) fail_file(path_, "cannot write the file", errno);
   size_ = now.st_size;
 }
 
 void AppendedFile::append(std::string_view text) {
   if (const int error_number = write_all(file_.value(), text)) {
     [[maybe_unused]] const int ignored = ftruncate(file_.value(), size_);
-    fail(path_, "cannot write the file", error_number);
+    fail_file(path_, "cannot write the file", error_number);
   }
   size_ += std::ssize(text);
 }
 
 void AppendedFile::sync() {
-  if (file_system().fsync(file_.value()) != 0) fail(path_, "cannot write the file", errno);
+  if (file_system().fsync(file_.value()) != 0) fail_file(path_, "cannot write the file", errno);
 }
 
 }  // namespace graphdrl

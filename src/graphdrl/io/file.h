@@ -22,6 +22,15 @@ void write_file(const std::filesystem::path& path, std::string_view content);
 void write_file_and_keep(const std::filesystem::path& path, std::string_view content,
                          const std::filesystem::path& previous);
 
+// Whether the files of a path can be written is io/file_check.h's. These two it shares with write_file(): the folder of
+// a path, and where writing to it leads, over links whose end need not be there. Throws Error on links in a circle.
+std::filesystem::path folder_of(const std::filesystem::path& path);
+std::filesystem::path end_of_links(std::filesystem::path path);
+
+// Throws what an error number of the system means for a file: MachineError where disk, memory or descriptors are not
+// enough, else Error.
+[[noreturn]] void fail_file(const std::filesystem::path& path, const std::string& what, int error_number);
+
 // Creates `folder` and its parents where missing, and makes sure that files can be written there. Throws Error.
 void prepare_folder(const std::filesystem::path& folder);
 

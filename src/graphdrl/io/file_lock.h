@@ -25,6 +25,9 @@ class Descriptor {
   int value_;
 };
 
+// Whether an open file is the one that `path` names.
+bool is_of(const Descriptor& file, const std::filesystem::path& path);
+
 // Locks an open file. Gives false with errno EWOULDBLOCK where another descriptor holds it, with ENOENT where the file
 // is no longer what `path` names, and with another where the file system has no locks.
 bool try_lock(const Descriptor& file, const std::filesystem::path& path);

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "graphdrl/base/note.h"
 #include "graphdrl/io/json.h"
 
 namespace graphdrl {
@@ -23,7 +24,10 @@ std::string metrics_until(const std::filesystem::path& path, const std::string& 
   std::istringstream content(read_file(path));
   for (std::string line; std::getline(content, line);) {
     const auto json = parse_json_or_discard(line);
-    if (!json.is_object() || !json.contains(counter) || !json[counter].is_number()) break;
+    if (!json.is_object() || !json.contains(counter) || !json[counter].is_number()) {
+      note(path.string() + ": a damaged line: it and what follows is dropped");
+      break;
+    }
     if (json[counter].get<std::int64_t>() > done) break;
     kept += line + '\n';
   }

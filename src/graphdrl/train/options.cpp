@@ -189,8 +189,8 @@ Json config_json(const TrainOptions& options) {
   return json;
 }
 
-void write_config(const std::filesystem::path& path, const TrainOptions& options) {
-  write_file(path, config_json(options).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+std::string config_text(const TrainOptions& options) {
+  return config_json(options).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 TrainOptions parse_options(const Json& given, const std::string& source) {

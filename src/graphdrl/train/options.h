@@ -95,8 +95,8 @@ TrainOptions parse_options(const nlohmann::ordered_json& given, const std::strin
 // Every option that the preset takes, resolved, by its key.
 nlohmann::ordered_json config_json(const TrainOptions& options);
 
-// config.json: the same.
-void write_config(const std::filesystem::path& path, const TrainOptions& options);
+// What config.json holds: the same.
+std::string config_text(const TrainOptions& options);
 // Throws Error on a missing, unknown or mistyped key and on a value out of range.
 TrainOptions read_config(const std::filesystem::path& path);
 

@@ -70,6 +70,8 @@ bool RunState::is_whole(const std::filesystem::path& file) const {
   if (sum == record->files.end()) return false;
   try {
     return FileSum::of(read_file(file)) == sum->second;
+  } catch (const MachineError&) {
+    throw;
   } catch (const Error&) {
     return false;
   }
@@ -84,6 +86,8 @@ RunState state_of(const RunDirectory& run) {
   }
   try {
     state.record = read_record(run);
+  } catch (const MachineError&) {
+    throw;
   } catch (const Error&) {
     state.faults.emplace_back("run.json is damaged");
     return state;

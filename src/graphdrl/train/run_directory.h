@@ -70,7 +70,7 @@ struct RunState {
   bool is_whole(const std::filesystem::path& file) const;  // there, and as the record says
 };
 // Reads run.json and every file that it names. Where run.json is missing or damaged, that is the one fault. Throws
-// nothing for what is missing or damaged.
+// MachineError where a file cannot be read just now, nothing for what is missing or damaged.
 RunState state_of(const RunDirectory& run);
 
 }  // namespace graphdrl

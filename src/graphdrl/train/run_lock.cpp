@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstring>
+
+#include "graphdrl/io/file.h"
 
 namespace graphdrl {
 namespace {
@@ -49,29 +51,31 @@ double age_of(const Descriptor& file) {
 
 RunLock::RunLock(const RunDirectory& run) : path_(run.lock()) {
   const std::string host = " on " + host_name();
+  const std::string own = fmt::format("process {}{}", getpid(), host);
   while (true) {
     file_ = Descriptor(open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
-    if (!file_)
-      throw Error({.what = fmt::format("cannot lock the run ({})", std::strerror(errno)), .where = path_.string()});
+    if (!file_) fail_file(path_, "cannot lock the run", errno);
     const bool locked = try_lock(file_, path_);
     if (!locked && errno == ENOENT) continue;  // its holder has just ended
     const std::string holder = read_start(file_);
     if (!locked && errno == EWOULDBLOCK) refuse(path_, holder, "to wait for it");
-    const bool of_this_host = holder.empty() || (locked && holder.ends_with(host));
-    if (!of_this_host && age_of(file_) < static_cast<double>(kDeadAfter.count())) {
+    const bool is_free = holder.empty() || holder == own || (locked && holder.ends_with(host));
+    if (!is_free && age_of(file_) < static_cast<double>(kDeadAfter.count())) {
       refuse(path_, holder, fmt::format("to wait {} s for a sign of life, or --break-lock", kDeadAfter.count()));
     }
     break;
   }
-  const std::string own = fmt::format("process {}{}", getpid(), host);
   if (ftruncate(file_.value(), 0) != 0 || pwrite(file_.value(), own.data(), own.size(), 0) != std::ssize(own)) {
-    throw MachineError(
-        {.what = fmt::format("cannot lock the run ({})", std::strerror(errno)), .where = path_.string()});
+    fail_file(path_, "cannot lock the run", errno);
   }
 }
 
 RunLock::~RunLock() {
-  unlink(path_.c_str());
+  if (is_of(file_, path_)) unlink(path_.c_str());
+}
+
+void RunLock::require_held() const {
+  if (!is_of(file_, path_)) refuse(path_, "it took over while this one was silent", "one training a run");
 }
 
 void RunLock::beat() {

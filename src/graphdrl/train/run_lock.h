@@ -28,6 +28,8 @@ class RunLock {
   RunLock(const RunLock&) = delete;
   ~RunLock();
 
+  // Throws RunLocked where another trainer took the lock for that of a dead one. Call it before each save.
+  void require_held() const;
   // Says that the trainer lives; cheap. Call it every few seconds, on any thread.
   void beat();
 

@@ -104,6 +104,7 @@ SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t>
                  .expected = "a new folder, or --resume to go on with them",
                  .where = folder.string()});
   }
+  RunDirectory(folder).require_new();
   const SeedsFile file{.seeds = std::move(seeds), .options = options};
   Trainer::check(options, learners);
   for (const PlannedRun& run : planned_runs(file, folder)) run.directory.require_new();

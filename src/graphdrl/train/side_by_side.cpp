@@ -17,15 +17,8 @@ namespace graphdrl {
 
 namespace {
 
-// But for the maps: a folder may have been moved, and the checkpoint holds them. Says nothing of a configuration that
-// is missing or damaged: the trainer mends it.
-void require_same_options(const PlannedRun& run) {
-  TrainOptions found;
-  try {
-    found = read_config(run.directory.config());
-  } catch (const Error&) {
-    return;
-  }
+// But for the maps: a folder may have been moved, and the checkpoint holds them.
+void require_same_options(const PlannedRun& run, TrainOptions found) {
   found.maps = run.options.maps;
   if (config_json(found) == config_json(run.options)) return;
   throw Error({.what = "the folder holds a run of other options", .where = run.directory.path().string()});
@@ -38,7 +31,8 @@ std::vector<std::vector<int>> runs_alike(const std::vector<PlannedRun>& runs) {
   for (int run = 0; run < std::ssize(runs); ++run) {
     TrainOptions options = runs[run].options;
     options.seed = 0;
-    const auto [kind, is_new] = known.try_emplace(config_json(options).dump(), kinds.size());
+    const auto [kind, is_new] = known.try_emplace(
+        config_json(options).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace), kinds.size());
     if (is_new) kinds.emplace_back();
     kinds[kind->second].push_back(run);
   }
@@ -78,11 +72,10 @@ SideBySide::SideBySide(std::vector<PlannedRun> runs)
       finished_(runs_.size()),
       units_(units_of(runs_.front().options)) {
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    if (!runs_[i].directory.holds_a_run()) continue;
-    require_same_options(runs_[i]);
     const RunState state = state_of(runs_[i].directory);
     if (state.record) progress_[i] = state.record->progress;
     finished_[i] = state.finished();
+    if (state.finished()) require_same_options(runs_[i], read_config(runs_[i].directory.config()));
   }
 }
 
@@ -132,6 +125,7 @@ bool SideBySide::train(int run, const LearnerSource& learners, const std::functi
   try {
     const auto trainer = planned.directory.holds_a_run() ? Trainer::resume(planned.directory, learners)
                                                          : Trainer::start(planned.options, planned.directory, learners);
+    require_same_options(planned, trainer->options());
     return trainer->run(stop, [&](const TrainingNews& news) { tell(news.progress); });
   } catch (const Error&) {
     throw;

@@ -26,8 +26,8 @@ struct SideBySideNews {
 
 class SideBySide {
  public:
-  // Reads where the runs stand that are begun, by their records. Throws Error where a directory holds a run of other
-  // options.
+  // Reads where the runs stand that are begun, by their records. Throws Error where a directory holds a finished run of
+  // other options; run() does so of the others.
   // REQUIRES: at least one run; all of one preset, length and device.
   explicit SideBySide(std::vector<PlannedRun> runs);
 

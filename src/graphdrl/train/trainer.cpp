@@ -26,9 +26,19 @@ void say(const RunDirectory& run, const std::string& what) {
 std::optional<TrainOptions> config_of(const RunDirectory& run) {
   try {
     return read_config(run.config());
+  } catch (const MachineError&) {
+    throw;
   } catch (const Error&) {
     return std::nullopt;
   }
+}
+
+// Whether a file holds this; may_go_on: and maybe more behind it.
+bool is_as_meant(const std::filesystem::path& path, const std::string& content, bool may_go_on = false) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return false;
+  const std::string found = read_file(path);
+  return may_go_on ? found.starts_with(content) : found == content;
 }
 
 // The checkpoint, or the one before it. Throws the Error of the first if none is whole.
@@ -39,6 +49,8 @@ std::optional<Checkpoint> newest_checkpoint(const RunDirectory& run) {
     if (!std::filesystem::exists(file, error)) continue;
     try {
       return Checkpoint::read(file);
+    } catch (const MachineError&) {
+      throw;
     } catch (const Error&) {
       if (!failure) failure = std::current_exception();
     }
@@ -90,7 +102,6 @@ std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDi
   prepare_folder(run.path());
   trainer->lock_ = std::make_unique<RunLock>(run);
   run.require_new();
-  write_config(run.config(), options);
   trainer->save();
   return trainer;
 }
@@ -102,7 +113,9 @@ std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const LearnerS
   const std::optional<Checkpoint> from = newest_checkpoint(run);
   const auto config = config_of(run);
   if (!from) {
-    if (!config || std::filesystem::exists(run.policy())) {
+    const bool alone =
+        !std::filesystem::exists(run.policy()) && !std::filesystem::exists(run.metrics()) && !state.record;
+    if (!config || !alone) {
       throw Error({.what = "the run cannot be gone on with: it has no checkpoint", .where = run.path().string()});
     }
     say(run, "there is no checkpoint: the run begins anew");
@@ -136,14 +149,10 @@ void Trainer::mend(const RunState& state, const Checkpoint& from) {
     metrics_ = metrics_until(run_.metrics(), counter, progress_.done);
     return;
   }
-  const auto config = config_of(run_);
-  if (!config || config_json(*config) != config_json(options_)) {
+  if (!is_as_meant(run_.config(), config_text(options_))) {
     say(run_, run_.config().filename().string() + " is missing or not what the run was begun with: written anew");
-    write_config(run_.config(), options_);
   }
-  std::error_code error;
-  const bool has_metrics = std::filesystem::exists(run_.metrics(), error);
-  if (!metrics_.empty() && !(has_metrics && read_file(run_.metrics()).starts_with(metrics_))) {
+  if (!metrics_.empty() && !is_as_meant(run_.metrics(), metrics_, /*may_go_on=*/true)) {
     say(run_, run_.metrics().filename().string() + " is missing or damaged: written anew");
   }
   if (progress_.samples == 0) return;
@@ -152,7 +161,7 @@ void Trainer::mend(const RunState& state, const Checkpoint& from) {
   } else if (state.record->progress.samples != progress_.samples) {
     return;
   }
-  const bool has_policy = state.record ? state.is_whole(run_.policy()) : std::filesystem::exists(run_.policy(), error);
+  const bool has_policy = state.record ? state.is_whole(run_.policy()) : std::filesystem::exists(run_.policy());
   if (!has_policy) say(run_, run_.policy().filename().string() + " is missing or damaged: written anew");
 }
 
@@ -162,11 +171,15 @@ bool Trainer::run(const std::function<bool()>& stop, const std::function<void(co
     throw MachineError({.what = fmt::format("{}; saved up to {} {}; to go on: graphdrl train --resume {}", what,
                                             units_.name, saved_.done, run_.path().string())});
   };
+  std::optional<NotFinite> failure;
   while (true) {
     try {
+      if (failure) go_back(*failure);
+      failure.reset();
       return train(stop, tell);
-    } catch (const NotFinite& failure) {
-      go_back(failure);
+    } catch (const NotFinite& found) {
+      if (failure) throw;  // it cannot go back
+      failure = found;
     } catch (const MachineError& error) {
       refuse(error.what());
     } catch (const std::bad_alloc&) {
@@ -178,7 +191,9 @@ bool Trainer::run(const std::function<bool()>& stop, const std::function<void(co
 // To the last checkpoint, with half the learning rate; the checkpoint says so from then on.
 void Trainer::go_back(const NotFinite& failure) {
   const std::string checkpoint = fmt::format("{}, of {} {}", run_.checkpoint().string(), units_.name, saved_.done);
-  const std::string what = fmt::format("{}; the last good checkpoint: {}", failure.what(), checkpoint);
+  const std::string tensor = recipe_->not_finite();
+  const std::string what = fmt::format("{}{}; the last good checkpoint: {}", failure.what(),
+                                       tensor.empty() ? "" : ", nor is " + tensor, checkpoint);
   if (options_.on_nan != kRollback) {
     throw NotFinite({.what = what, .expected = "a smaller --learning-rate, or --on-nan rollback"});
   }
@@ -189,7 +204,9 @@ void Trainer::go_back(const NotFinite& failure) {
   ++rollbacks_;
   say(run_, fmt::format("{}; going on from there with the learning rate halved, {} of {} times", what, rollbacks_,
                         kMostRollbacks));
-  restore(newest_checkpoint(run_).value());
+  const Checkpoint from = newest_checkpoint(run_).value();
+  keeps_checkpoint_ = from.source() == run_.checkpoint().string();
+  restore(from);
   metrics_file_.reset();
   save();
 }
@@ -206,9 +223,7 @@ bool Trainer::train(const std::function<bool()>& stop, const std::function<void(
   bool stopped = false;
   while (!finished() && !stopped && recipe_->run_unit(progress_, must_stop)) {
     ++progress_.done;
-    if (const std::string tensor = recipe_->not_finite(); !tensor.empty()) {
-      throw NotFinite({.what = fmt::format("{} is not finite after {} {}", tensor, units_.name, progress_.done)});
-    }
+    if (options_.device == "cpu") require_finite();  // a device would wait
     stopped = must_stop();
     progress_.elapsed_s = before.elapsed_s + session.seconds();
     const double rate = static_cast<double>(progress_.samples - before.samples) / std::max(session.seconds(), 1e-9);
@@ -236,13 +251,28 @@ std::vector<Metric> Trainer::log() {
   return taken;
 }
 
+void Trainer::require_finite() const {
+  const std::string tensor = recipe_->not_finite();
+  if (tensor.empty()) return;
+  throw NotFinite({.what = fmt::format("{} is not finite after {} {}, {} {}", tensor, units_.name, progress_.done,
+                                       progress_.samples, units_.samples)});
+}
+
 // Each file is on the disk before the next one: what the record names is there. A kill between two of them leaves a
 // checkpoint that is newer than the record, from which the rest is written again.
 void Trainer::save() {
+  lock_->require_held();
+  require_finite();
+  // What others did to these files in the meantime is undone.
+  const std::string config = config_text(options_);
+  if (!is_as_meant(run_.config(), config)) write_file(run_.config(), config);
   if (metrics_file_) {
+    metrics_ = metrics_file_->lines();
+    if (!is_as_meant(run_.metrics(), metrics_)) {
+      metrics_file_ = std::make_unique<MetricsFile>(run_.metrics(), units_.name, metrics_);
+    }
     metrics_file_->sync();
     events_->sync();
-    metrics_ = metrics_file_->lines();
   }
   RunRecord record{.finished = finished(), .progress = progress_, .files = {}};
   CheckpointWriter writer(options_.preset);
@@ -262,7 +292,7 @@ void Trainer::save() {
   recipe_->write_policy(run_.policy());
   record.add(run_.checkpoint(), checkpoint);
   record.add(run_.policy(), read_file(run_.policy()));
-  record.add(run_.config(), read_file(run_.config()));
+  record.add(run_.config(), config);
   if (metrics_file_) record.add(run_.metrics(), metrics_);
   write_record(run_, record);
   saved_ = progress_;

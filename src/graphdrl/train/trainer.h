@@ -47,6 +47,7 @@ class Trainer {
   // or the memory is not enough.
   bool run(const std::function<bool()>& stop, const std::function<void(const TrainingNews&)>& tell);
 
+  const TrainOptions& options() const { return options_; }  // of the checkpoint, where the run was resumed
   const RunDirectory& run_directory() const { return run_; }
   const TrainingProgress& progress() const { return progress_; }
   const TrainingUnits& units() const { return units_; }
@@ -63,6 +64,7 @@ class Trainer {
   bool train(const std::function<bool()>& stop, const std::function<void(const TrainingNews&)>& tell);
   // Gives what was written.
   std::vector<Metric> log();
+  void require_finite() const;
   void save();
 
   TrainOptions options_;

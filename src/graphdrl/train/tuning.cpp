@@ -224,24 +224,27 @@ bool Tuning::run(const std::function<bool()>& stop,
     if (!trainings.run(
             stop, [&](const SideBySideNews& news) { tell(round, news); }, learners))
       return false;
-    scores_.push_back(score(round));
+    std::optional<RoundScores> scores = score(round, stop);
+    if (!scores) return false;
+    scores_.push_back(std::move(*scores));
   }
   return true;
 }
 
-RoundScores Tuning::score(std::size_t round) const {
-  ComparisonOptions comparison{.policies = {}, .all_starts = true};
-  for (const PlannedRun& run : runs_of(round)) comparison.policies.push_back(run.directory.policy().string());
+std::optional<RoundScores> Tuning::score(std::size_t round, const std::function<bool()>& stop) const {
   const std::vector<World> worlds = load_worlds({(folder_ / "maps" / "validation").string()});
-  comparison.budget = Budget::parse(default_options(kPaperPreset).budget);
-  const Comparison result = compare(worlds, comparison);
+  const std::vector<PlannedRun> runs = runs_of(round);
   const auto seeds = static_cast<std::size_t>(options_.rounds[round].seeds);
   RoundScores scores;
   for (const std::size_t setting : settings_of(round)) {
-    SettingScore score{.setting = setting, .by_seed = {}, .over_seeds = {}, .over_paper = 0, .over_paper_errors = {}};
+    if (stop()) return std::nullopt;
+    ComparisonOptions comparison{.policies = {}, .all_starts = true};
+    comparison.budget = Budget::parse(default_options(kPaperPreset).budget);
     for (std::size_t i = 0; i < seeds; ++i) {
-      score.by_seed.push_back(*result.overall[scores.size() * seeds + i].mean);
+      comparison.policies.push_back(runs[scores.size() * seeds + i].directory.policy().string());
     }
+    SettingScore score{.setting = setting, .by_seed = {}, .over_seeds = {}, .over_paper = 0, .over_paper_errors = {}};
+    for (const ComparisonOverall& of_seed : compare(worlds, comparison).overall) score.by_seed.push_back(*of_seed.mean);
     score.over_seeds = summarise(score.by_seed);
     const std::vector<double>& paper = scores.empty() ? score.by_seed : scores.front().by_seed;
     const PairedDifference difference = paired_difference(score.by_seed, paper);

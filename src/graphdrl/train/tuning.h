@@ -77,7 +77,8 @@ class Tuning {
 
   std::vector<std::size_t> settings_of(std::size_t round) const;
   std::vector<PlannedRun> runs_of(std::size_t round) const;
-  RoundScores score(std::size_t round) const;
+  // Nothing where `stop`, asked before each setting, says so.
+  std::optional<RoundScores> score(std::size_t round, const std::function<bool()>& stop) const;
 
   TuneOptions options_;
   std::vector<Setting> settings_;
