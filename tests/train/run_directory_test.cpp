@@ -181,14 +181,16 @@ TEST(RunLock, KeepsOthersOut) {
 TEST(RunLock, TakesSilenceOfAnotherHostForDeath) {
   const TemporaryFolder folder;
   const RunDirectory run(folder.path());
-  write_file(run.lock(), "process 1 on elsewhere");
+  write_file(run.lock(), "process 1 on elsewhere\n");
   EXPECT_THAT(error_of([&] { RunLock{run}; }), HasSubstr("process 1 on elsewhere: expected to wait 60 s"));
   EXPECT_THAT(error_of([&] { RunLock{run}; }), HasSubstr("elsewhere"));  // to ask is no sign of life
   std::filesystem::last_write_time(run.lock(),
                                    std::filesystem::file_time_type::clock::now() - std::chrono::seconds(61));
   EXPECT_EQ(error_of([&] { RunLock{run}; }), "");
   EXPECT_FALSE(std::filesystem::exists(run.lock()));
-  write_file(run.lock(), "process 1 on elsewhere");
+  write_file(run.lock(), "process 1");  // killed as it wrote
+  EXPECT_EQ(error_of([&] { RunLock{run}; }), "");
+  write_file(run.lock(), "process 1 on elsewhere\n");
   break_locks(folder.path());
   EXPECT_EQ(error_of([&] { RunLock{run}; }), "");
 }

@@ -41,7 +41,8 @@ double age_of(const Descriptor& file) {
   return static_cast<double>(now.st_mtim.tv_sec - before.st_mtim.tv_sec);
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& holder, const std::string& expected) {
+[[noreturn]] void refuse(const std::filesystem::path& path, std::string holder, const std::string& expected) {
+  if (holder.ends_with('\n')) holder.pop_back();
   throw RunLocked({.what = "another training is at work on this run: " + (holder.empty() ? "unknown" : holder),
                    .expected = expected,
                    .where = path.parent_path().string()});
@@ -50,7 +51,7 @@ double age_of(const Descriptor& file) {
 }  // namespace
 
 RunLock::RunLock(const RunDirectory& run) : path_(run.lock()) {
-  const std::string host = " on " + host_name();
+  const std::string host = " on " + host_name() + '\n';
   const std::string own = fmt::format("process {}{}", getpid(), host);
   while (true) {
     file_ = Descriptor(open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
@@ -59,7 +60,8 @@ RunLock::RunLock(const RunDirectory& run) : path_(run.lock()) {
     if (!locked && errno == ENOENT) continue;  // its holder has just ended
     const std::string holder = read_start(file_);
     if (!locked && errno == EWOULDBLOCK) refuse(path_, holder, "to wait for it");
-    const bool is_free = holder.empty() || holder == own || (locked && holder.ends_with(host));
+    // A text without its end is of a trainer that was killed as it wrote it.
+    const bool is_free = !holder.ends_with('\n') || holder == own || (locked && holder.ends_with(host));
     if (!is_free && age_of(file_) < static_cast<double>(kDeadAfter.count())) {
       refuse(path_, holder, fmt::format("to wait {} s for a sign of life, or --break-lock", kDeadAfter.count()));
     }
