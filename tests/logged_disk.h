@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -51,6 +52,10 @@ class LoggedDisk final : public UnsyncedDisk {
     contents_[file].append(static_cast<const char*>(data), size);
     log_.push_back({.kind = Kind::kWrite, .file = file, .size = contents_[file].size()});
     return FileSystem::write(descriptor, data, size);
+  }
+  int ftruncate(int descriptor, off_t size) override {
+    EXPECT_EQ(static_cast<std::size_t>(size), contents_[open_.at(descriptor)].size()) << "no cut knows shorter files";
+    return FileSystem::ftruncate(descriptor, size);
   }
   int fsync(int descriptor) override {
     const auto folder = folders_.find(descriptor);

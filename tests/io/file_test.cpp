@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <thread>
 
-#include "graphdrl/io/file_system.h"
+#include "failing_disk.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -127,35 +127,6 @@ TEST(WriteFileAndKeep, KeepsWhatWasThere) {
   EXPECT_EQ(read_file(folder / "before"), "2");
 }
 
-// Fails one call, with one error.
-class Failing final : public FileSystem {
- public:
-  Failing(int call, int error_number) : left_(call), error_number_(error_number) { set_file_system(this); }
-  ~Failing() override { set_file_system(nullptr); }
-
-  bool has_failed() const { return left_ < 0; }
-
-  int open(const char* path, int flags, mode_t mode) override {
-    return fails() ? -1 : FileSystem::open(path, flags, mode);
-  }
-  ssize_t write(int descriptor, const void* data, std::size_t size) override {
-    if (!fails()) return FileSystem::write(descriptor, data, size);
-    return FileSystem::write(descriptor, data, size / 2) < 0 ? -1 : (errno = error_number_, -1);
-  }
-  int fsync(int descriptor) override { return fails() ? -1 : FileSystem::fsync(descriptor); }
-  int rename(const char* from, const char* to) override { return fails() ? -1 : FileSystem::rename(from, to); }
-  int mkdir(const char* path, mode_t mode) override { return fails() ? -1 : FileSystem::mkdir(path, mode); }
-
- private:
-  bool fails() {
-    errno = error_number_;
-    return left_-- == 0;
-  }
-
-  int left_;
-  int error_number_;
-};
-
 // Whatever call fails: the old content or the new one, no other file, and an error that blames the machine.
 TEST(WriteFile, IsWholeWhateverCallFails) {
   const TemporaryFolder folder;
@@ -164,14 +135,14 @@ TEST(WriteFile, IsWholeWhateverCallFails) {
     for (int call = 0; failed; ++call) {
       write_file(folder / "file", "old");
       {
-        const Failing failing(call, error_number);
+        const FailingDisk disk(call, error_number);
         bool refused = false;
         try {
           write_file(folder / "file", "new content");
         } catch (const MachineError&) {
           refused = true;
         }
-        failed = failing.has_failed();
+        failed = disk.has_failed();
         EXPECT_EQ(refused, failed) << call;
       }
       const std::string content = read_file(folder / "file");
@@ -181,13 +152,29 @@ TEST(WriteFile, IsWholeWhateverCallFails) {
   }
 }
 
+TEST(AppendedFile, TakesBackATextThatFails) {
+  const TemporaryFolder folder;
+  AppendedFile file(folder / "file");
+  file.append("first\n");
+  {
+    const FailingDisk disk(0, ENOSPC);
+    EXPECT_THROW(file.append("second\n"), MachineError);
+  }
+  EXPECT_EQ(read_file(folder / "file"), "first\n");
+  {
+    const FailingDisk disk(0, ENOSPC, /*all_later=*/true);  // it is not taken back
+    EXPECT_THROW(file.append("second\n"), MachineError);
+  }
+  EXPECT_EQ(read_file(folder / "file"), "first\nsec");
+}
+
 TEST(PrepareFolder, SaysWhateverCallFails) {
   const TemporaryFolder folder;
   bool failed = true;
   for (int call = 0; failed; ++call) {
-    const Failing failing(call, ENOSPC);
+    const FailingDisk disk(call, ENOSPC);
     const std::string error = error_of([&] { prepare_folder(folder / std::to_string(call) / "a/b"); });
-    failed = failing.has_failed();
+    failed = disk.has_failed();
     EXPECT_EQ(!error.empty(), failed) << call;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "failing_disk.h"
 #include "graphdrl/base/note.h"
 #include "graphdrl/train/finished_runs.h"
 #include "train/training.h"
@@ -175,6 +176,26 @@ TEST(RunLock, KeepsOthersOut) {
   break_locks(folder.path());  // of the living, it breaks none
   EXPECT_THROW(Trainer::resume(run), RunLocked);
   EXPECT_TRUE(train(*trainer));
+}
+
+TEST(RunLock, SaysWhateverCallFails) {
+  const TemporaryFolder folder;
+  const RunDirectory run(folder.path());
+  bool failed = true;
+  for (int call = 0; failed; ++call) {
+    bool refused = false;
+    {
+      const FailingDisk disk(call, ENOSPC);
+      try {
+        const RunLock lock(run);
+      } catch (const MachineError&) {
+        refused = true;
+      }
+      failed = disk.has_failed();
+    }
+    EXPECT_EQ(refused, failed) << call;
+    EXPECT_EQ(error_of([&] { RunLock{run}; }), "") << call;  // what is left of it keeps nobody out
+  }
 }
 
 // A trainer of another host is known by the time of the file alone.

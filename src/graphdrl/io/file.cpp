@@ -29,17 +29,6 @@ bool is_of_machine(int error_number) {
   return false;
 }
 
-// Gives 0, or the number of what failed.
-int write_all(int descriptor, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = file_system().write(descriptor, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return written < 0 ? errno : EIO;
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return 0;
-}
-
 int sync_folder(const std::filesystem::path& folder) {
   const Descriptor descriptor(file_system().open(folder.c_str(), O_RDONLY | O_DIRECTORY, 0));
   if (!descriptor) return errno == EACCES ? 0 : errno;  // a folder to write into, not to read
@@ -204,7 +193,7 @@ AppendedFile::AppendedFile(std::filesystem::path path)
 
 void AppendedFile::append(std::string_view text) {
   if (const int error_number = write_all(file_.value(), text)) {
-    [[maybe_unused]] const int ignored = ftruncate(file_.value(), size_);
+    [[maybe_unused]] const int ignored = file_system().ftruncate(file_.value(), size_);
     fail_file(path_, "cannot write the file", error_number);
   }
   size_ += std::ssize(text);

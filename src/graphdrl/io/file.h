@@ -34,7 +34,8 @@ std::filesystem::path end_of_links(std::filesystem::path path);
 // Creates `folder` and its parents where missing, and makes sure that files can be written there. Throws Error.
 void prepare_folder(const std::filesystem::path& folder);
 
-// A file that grows. Each text is in it whole, or not at all; sync() makes sure that a power cut takes none of them.
+// A file that grows. Each text is in it whole; where append() throws, not at all, if the disk takes a part back. sync()
+// makes sure that a power cut takes none of them.
 class AppendedFile {
  public:
   // Throws Error, as do the others.

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 
 namespace graphdrl {
@@ -18,6 +19,9 @@ int FileSystem::open(const char* path, int flags, mode_t mode) {
 }
 ssize_t FileSystem::write(int descriptor, const void* data, std::size_t size) {
   return ::write(descriptor, data, size);
+}
+int FileSystem::ftruncate(int descriptor, off_t size) {
+  return ::ftruncate(descriptor, size);
 }
 int FileSystem::fsync(int descriptor) {
   return ::fsync(descriptor);
@@ -42,6 +46,16 @@ FileSystem& file_system() {
 
 void set_file_system(FileSystem* replacement) {
   replaced_by = replacement;
+}
+
+int write_all(int descriptor, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = file_system().write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return written < 0 ? errno : EIO;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
 }
 
 }  // namespace graphdrl

@@ -9,6 +9,7 @@
 #include <cerrno>
 
 #include "graphdrl/io/file.h"
+#include "graphdrl/io/file_system.h"
 
 namespace graphdrl {
 namespace {
@@ -54,7 +55,7 @@ RunLock::RunLock(const RunDirectory& run) : path_(run.lock()) {
   const std::string host = " on " + host_name() + '\n';
   const std::string own = fmt::format("process {}{}", getpid(), host);
   while (true) {
-    file_ = Descriptor(open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
+    file_ = Descriptor(file_system().open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW, 0666));
     if (!file_) fail_file(path_, "cannot lock the run", errno);
     const bool locked = try_lock(file_, path_);
     if (!locked && errno == ENOENT) continue;  // its holder has just ended
@@ -67,13 +68,12 @@ RunLock::RunLock(const RunDirectory& run) : path_(run.lock()) {
     }
     break;
   }
-  if (ftruncate(file_.value(), 0) != 0 || pwrite(file_.value(), own.data(), own.size(), 0) != std::ssize(own)) {
-    fail_file(path_, "cannot lock the run", errno);
-  }
+  if (file_system().ftruncate(file_.value(), 0) != 0) fail_file(path_, "cannot lock the run", errno);
+  if (const int error_number = write_all(file_.value(), own)) fail_file(path_, "cannot lock the run", error_number);
 }
 
 RunLock::~RunLock() {
-  if (is_of(file_, path_)) unlink(path_.c_str());
+  if (is_of(file_, path_)) file_system().unlink(path_.c_str());
 }
 
 void RunLock::require_held() const {
@@ -92,8 +92,8 @@ void RunLock::beat() {
 void break_locks(const std::filesystem::path& folder) {
   std::error_code error;
   const auto break_one = [](const std::filesystem::path& path) {
-    const Descriptor file(open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));
-    if (file && try_lock(file, path)) unlink(path.c_str());
+    const Descriptor file(file_system().open(path.c_str(), O_RDWR | O_NOFOLLOW, 0));
+    if (file && try_lock(file, path)) file_system().unlink(path.c_str());
   };
   const std::filesystem::path name = RunDirectory("").lock();
   for (std::filesystem::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
