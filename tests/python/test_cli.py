@@ -485,6 +485,11 @@ def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
     again = run("graphdrl", "train", "--config", "all/seeds.json", "--out", "again", cwd=tmp_path)
     assert again.returncode == 0, again.stderr
     assert (tmp_path / "again/seeds.json").read_bytes() == (tmp_path / "all/seeds.json").read_bytes()
+    damaged = (tmp_path / "all/seeds.json").read_text().replace('"episodes": 10', '"episodes": 11')
+    (tmp_path / "damaged.json").write_text(damaged)
+    refused = run("graphdrl", "train", "--config", "damaged.json", "--out", "damaged", cwd=tmp_path)
+    assert refused.returncode == 2 and "the file is damaged" in refused.stderr
+    assert not (tmp_path / "damaged").exists()
     twice = run("graphdrl", "results", "all", "all/seed-1", cwd=tmp_path)
     assert twice.returncode == 2 and "two runs of seed 1" in twice.stderr
 

@@ -15,7 +15,7 @@
 #include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
-#include "graphdrl/io/checksum.h"
+#include "graphdrl/io/checked_json.h"
 #include "graphdrl/io/json.h"
 #include "graphdrl/report/progress.h"
 #include "graphdrl/train/options.h"
@@ -50,11 +50,11 @@ class ConfigReader : public CLI::ConfigTOML {
     content << input.rdbuf();
     if ((content >> std::ws).peek() != '{') return CLI::ConfigTOML::from_config(content);
     require_shallow_json(content.str(), "--config");
-    const Json json = Json::parse(content.str(), nullptr, /*allow_exceptions=*/false);
+    Json json = Json::parse(content.str(), nullptr, /*allow_exceptions=*/false);
     if (!json.is_object()) throw Error({.what = "the configuration is not valid JSON", .where = "--config"});
+    take_checksum(json, "--config");  // of seeds.json
     std::vector<CLI::ConfigItem> result;
     for (const auto& [key, value] : json.items()) {
-      if (key == "layout" || key == kChecksumKey) continue;  // of seeds.json
       CLI::ConfigItem item;
       item.name = flag_of(key).substr(2);
       for (const Json& one : value.is_array() ? value : Json::array({value})) {

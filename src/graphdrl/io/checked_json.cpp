@@ -35,21 +35,25 @@ OrderedJson read_checked_json(const std::filesystem::path& path) {
   require_shallow_json(text, source);
   OrderedJson object = OrderedJson::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!object.is_object()) throw Error({.what = "not a whole document", .expected = "a JSON object", .where = source});
-  if (const auto found = object.find(kChecksumKey); found != object.end()) {
-    const OrderedJson expected = *found;
-    object.erase(found);
-    if (expected == sum_of(object)) {
-      if (object.value(kDocumentLayoutKey, 0) != kDocumentLayout) {
-        throw Error({.what = "a document of another version of graphdrl", .where = source});
-      }
-      object.erase(kDocumentLayoutKey);
-      return object;
-    }
-  } else if (!object.contains(kDocumentLayoutKey)) {
+  if (!take_checksum(object, source)) {
     note(source + ": no checksum: whether the file is undamaged cannot be told");
-    return object;
   }
-  throw Error({.what = "the file is damaged: its checksum is not that of its content", .where = source});
+  return object;
+}
+
+bool take_checksum(OrderedJson& object, const std::string& source) {
+  const auto found = object.find(kChecksumKey);
+  if (found == object.end() && !object.contains(kDocumentLayoutKey)) return false;
+  const OrderedJson expected = found == object.end() ? OrderedJson() : *found;
+  object.erase(kChecksumKey);
+  if (expected != sum_of(object)) {
+    throw Error({.what = "the file is damaged: its checksum is not that of its content", .where = source});
+  }
+  if (object.value(kDocumentLayoutKey, 0) != kDocumentLayout) {
+    throw Error({.what = "a document of another version of graphdrl", .where = source});
+  }
+  object.erase(kDocumentLayoutKey);
+  return true;
 }
 
 }  // namespace graphdrl
