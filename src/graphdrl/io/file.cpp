@@ -184,8 +184,18 @@ void prepare_folder(const std::filesystem::path& folder) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) fail_file(folder, "cannot write into the folder", errno);
 }
 
-AppendedFile::AppendedFile(std::filesystem::path path)
-    : path_(std::move(path)), file_(file_system().open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666)) {
+AppendedFile::AppendedFile(const std::filesystem::path& path)
+    : AppendedFile(path, Descriptor(file_system().open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666))) {}
+
+std::optional<AppendedFile> AppendedFile::create(const std::filesystem::path& path) {
+  const int flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_APPEND;
+  Descriptor file(file_system().open(path.c_str(), flags, 0666));
+  if (!file && errno == EEXIST) return std::nullopt;
+  return AppendedFile(path, std::move(file));
+}
+
+AppendedFile::AppendedFile(std::filesystem::path path, Descriptor file)
+    : path_(std::move(path)), file_(std::move(file)) {
   struct stat now {};
   if (!file_ || fstat(file_.value(), &now) != 0) fail_file(path_, "cannot write the file", errno);
   size_ = now.st_size;

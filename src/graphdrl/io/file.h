@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -38,14 +39,18 @@ void prepare_folder(const std::filesystem::path& folder);
 // makes sure that a power cut takes none of them.
 class AppendedFile {
  public:
-  // Throws Error, as do the others.
-  explicit AppendedFile(std::filesystem::path path);
+  // Of a file that is there, or a new one. Throws Error, as do the others.
+  explicit AppendedFile(const std::filesystem::path& path);
   AppendedFile(AppendedFile&&) = default;
+  // A new file; nothing where something has the name already, be it a link.
+  static std::optional<AppendedFile> create(const std::filesystem::path& path);
 
   void append(std::string_view text);
   void sync();
 
  private:
+  AppendedFile(std::filesystem::path path, Descriptor file);
+
   std::filesystem::path path_;
   Descriptor file_;
   std::int64_t size_ = 0;

@@ -23,21 +23,20 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// A name no other file of the folder has: TensorBoard reads them in order of name, hence of time.
-std::filesystem::path fresh_path(const std::filesystem::path& folder) {
+// Of a name that no other file of the folder has: TensorBoard reads them in order of name, hence of time.
+AppendedFile new_file(const std::filesystem::path& folder) {
   char host[256] = "localhost";
   gethostname(host, sizeof host - 1);
   const auto seconds = static_cast<std::int64_t>(now_s());
   for (int n = 0;; ++n) {
-    std::filesystem::path path =
-        folder / fmt::format("events.out.tfevents.{:010}.{}.{}.{}", seconds, host, getpid(), n);
-    if (!std::filesystem::exists(path)) return path;
+    const std::string name = fmt::format("events.out.tfevents.{:010}.{}.{}.{}", seconds, host, getpid(), n);
+    if (auto file = AppendedFile::create(folder / name)) return std::move(*file);
   }
 }
 
 }  // namespace
 
-EventWriter::EventWriter(const std::filesystem::path& folder, std::int64_t first_step) : file_(fresh_path(folder)) {
+EventWriter::EventWriter(const std::filesystem::path& folder, std::int64_t first_step) : file_(new_file(folder)) {
   tensorboard::Event version;
   version.set_wall_time(now_s());
   version.set_file_version("brain.Event:2");
