@@ -129,6 +129,32 @@ TEST(Trainer, StopsWhereALossIsNotFinite) {
   EXPECT_EQ(Checkpoint::read(run.checkpoint()).progress().done, 2);
 }
 
+// The program that has the device locks the run itself.
+TEST(Trainer, AsksForItsDeviceBeforeItLocks) {
+  class Prepared final : public LearnerSource {
+   public:
+    explicit Prepared(const RunDirectory& run) : run_(run) {}
+    void prepare(const std::string& device) const override {
+      EXPECT_FALSE(std::filesystem::exists(run_.lock()));
+      devices.push_back(device);
+    }
+    mutable std::vector<std::string> devices;
+
+   private:
+    const RunDirectory& run_;
+  };
+  const TemporaryFolder folder;
+  const RunDirectory run(folder / "run");
+  Trainer::start(short_paper(), run);
+  const Prepared learners(run);
+  Trainer::resume(run, learners);
+  std::filesystem::remove(run.checkpoint());  // the configuration says it too
+  std::filesystem::remove(run.policy());
+  std::filesystem::remove(run.record());
+  Trainer::resume(run, learners);
+  EXPECT_EQ(learners.devices, (std::vector<std::string>{"cpu", "cpu"}));
+}
+
 TEST(Trainer, GoesBackAndLearnsMoreSlowly) {
   const TemporaryFolder folder;
   TrainOptions options = short_paper();

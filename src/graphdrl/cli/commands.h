@@ -36,6 +36,7 @@ int run_train_command(const std::vector<std::string>& arguments, const LearnerSo
 class CpuOrTorchProgram final : public LearnerSource {
  public:
   explicit CpuOrTorchProgram(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {}
+  void prepare(const std::string& device) const override;
   std::unique_ptr<PaperLearner> make(const std::string& device, const PaperLearnerOptions& options,
                                      Rng& rng) const override;
   std::vector<std::unique_ptr<LearnerSource>> make_together(const std::string& device, int trainings) const override;

@@ -292,6 +292,10 @@ int run_train_command(const std::vector<std::string>& arguments, const LearnerSo
   return run_program(program.app(), static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
 }
 
+void CpuOrTorchProgram::prepare(const std::string& device) const {
+  if (device != "cpu") become_torch_program(device, arguments_);
+}
+
 std::unique_ptr<PaperLearner> CpuOrTorchProgram::make(const std::string& device, const PaperLearnerOptions& options,
                                                       Rng& rng) const {
   if (device != "cpu") become_torch_program(device, arguments_);

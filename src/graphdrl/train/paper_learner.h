@@ -63,6 +63,9 @@ class LearnerSource {
  public:
   virtual ~LearnerSource() = default;
 
+  // Called before a run that is to be gone on with is locked: a program that has the device may take this one's place.
+  virtual void prepare(const std::string& /*device*/) const {}
+
   // Makes a learner on a device by its name, "cpu" or "cuda". It initialises the online network from rng and copies it
   // to the target. Throws Error where there is no such device.
   virtual std::unique_ptr<PaperLearner> make(const std::string& device, const PaperLearnerOptions& options,

@@ -59,6 +59,13 @@ std::optional<Checkpoint> newest_checkpoint(const RunDirectory& run) {
   return std::nullopt;
 }
 
+// That a run was told, by its checkpoint or else by its configuration.
+std::string device_of(const RunDirectory& run) {
+  const std::optional<Checkpoint> from = newest_checkpoint(run);
+  if (from && from->holds_options()) return parse_options(from->json(kOptionsKey), from->source()).device;
+  return config_of(run).value_or(TrainOptions{}).device;
+}
+
 }  // namespace
 
 Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const LearnerSource& learners,
@@ -108,6 +115,7 @@ std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDi
 
 std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const LearnerSource& learners) {
   if (!run.holds_a_run()) throw Error({.what = "there is no run to go on with", .where = run.path().string()});
+  learners.prepare(device_of(run));
   auto lock = std::make_unique<RunLock>(run);
   const RunState state = state_of(run);
   const std::optional<Checkpoint> from = newest_checkpoint(run);
