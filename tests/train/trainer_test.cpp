@@ -124,8 +124,8 @@ TEST(Trainer, StopsWhereALossIsNotFinite) {
   const auto trainer = Trainer::start(short_paper(), run, learners);
   // Eight transitions fill a batch; the sixteenth learning step is the first one that goes wrong.
   EXPECT_THAT(error_of([&] { train(*trainer); }),
-              HasSubstr("the loss is not finite at step 24; the last good checkpoint: " + run.checkpoint().string() +
-                        ", of episode 2"));
+              HasSubstr("the loss is nan at step 24; all weights are finite; the last good checkpoint: " +
+                        run.checkpoint().string() + ", of episode 2"));
   EXPECT_EQ(Checkpoint::read(run.checkpoint()).progress().done, 2);
 }
 

@@ -169,8 +169,7 @@ class ExplorerRecipe final : public Recipe {
       const double rate_share = kLastRate + (1 - kLastRate) * (1 + std::cos(std::numbers::pi * done)) / 2;
       const double loss = learner_.learn(picked, options_.learning_rate * rate_share);
       if (!std::isfinite(loss)) {
-        throw NotFinite(
-            {.what = fmt::format("the loss is not finite at step {} of round {}", *updates_ + 1, round + 1)});
+        throw NotFinite({.what = fmt::format("the loss is {} at step {} of round {}", loss, *updates_ + 1, round + 1)});
       }
       loss_ += loss / updates;
       regret_ += learner_.regret() / updates;

@@ -240,7 +240,7 @@ class PaperRecipe final : public Recipe {
     for (std::size_t i = 0; i < losses.size(); ++i) {
       if (!std::isfinite(losses[i])) {
         const std::int64_t step = last_step - std::ssize(losses) + 1 + static_cast<std::int64_t>(i);
-        throw NotFinite({.what = fmt::format("the loss is not finite at step {}", step)});
+        throw NotFinite({.what = fmt::format("the loss is {} at step {}", losses[i], step)});
       }
       window_.loss += losses[i];
       ++window_.losses;

@@ -30,7 +30,7 @@ struct TrainingUnits {
 };
 TrainingUnits units_of(const TrainOptions& options);
 
-// A loss or a weight that is no finite number: what() names it and the step.
+// A loss or a weight that is no finite number: what() says which of both, and when.
 class NotFinite : public Error {
  public:
   using Error::Error;

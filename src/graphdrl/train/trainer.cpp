@@ -200,8 +200,9 @@ bool Trainer::run(const std::function<bool()>& stop, const std::function<void(co
 void Trainer::go_back(const NotFinite& failure) {
   const std::string checkpoint = fmt::format("{}, of {} {}", run_.checkpoint().string(), units_.name, saved_.done);
   const std::string tensor = recipe_->not_finite();
-  const std::string what = fmt::format("{}{}; the last good checkpoint: {}", failure.what(),
-                                       tensor.empty() ? "" : ", nor is " + tensor, checkpoint);
+  const std::string what =
+      fmt::format("{}; {}; the last good checkpoint: {}", failure.what(),
+                  tensor.empty() ? "all weights are finite" : tensor + " is not finite", checkpoint);
   if (options_.on_nan != kRollback) {
     throw NotFinite({.what = what, .expected = "a smaller --learning-rate, or --on-nan rollback"});
   }
@@ -260,9 +261,8 @@ std::vector<Metric> Trainer::log() {
 }
 
 void Trainer::require_finite() const {
-  const std::string tensor = recipe_->not_finite();
-  if (tensor.empty()) return;
-  throw NotFinite({.what = fmt::format("{} is not finite after {} {}, {} {}", tensor, units_.name, progress_.done,
+  if (recipe_->not_finite().empty()) return;
+  throw NotFinite({.what = fmt::format("a weight is not finite after {} {}, {} {}", units_.name, progress_.done,
                                        progress_.samples, units_.samples)});
 }
 
