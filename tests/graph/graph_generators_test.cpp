@@ -67,6 +67,45 @@ TEST(GraphGenerators, LinkToTheWellLinked) {
   EXPECT_GT(oldest, 4 * newest);
 }
 
+// Triangles times three, over pairs of neighbours: the share of pairs of a node's neighbours that are joined.
+double transitivity(const Graph& graph) {
+  double pairs = 0;
+  double joined = 0;
+  for (NodeId node = 0; node < graph.node_count(); ++node) {
+    const auto near = graph.neighbours(node);
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      const auto of_one = graph.neighbours(near[i]);
+      for (std::size_t j = i + 1; j < near.size(); ++j) {
+        ++pairs;
+        joined += std::binary_search(of_one.begin(), of_one.end(), near[j]);
+      }
+    }
+  }
+  return joined / pairs;
+}
+
+TEST(GraphGenerators, CloseTriangles) {
+  double before = 0;
+  for (const double triads : {0.0, 0.5, 1.0}) {
+    Rng rng(10);
+    const Graph graph = power_law_cluster_graph(400, 3, triads, rng);
+    EXPECT_EQ(graph.edge_count(), 1 + 2 + 3 * (400 - 3));
+    EXPECT_TRUE(is_connected(graph));
+    EXPECT_GT(transitivity(graph), before + 0.03) << triads;
+    before = transitivity(graph);
+  }
+  // From the third node on, the second edge closes a triangle with the first: all edges are in one.
+  Rng rng(11);
+  const Graph graph = power_law_cluster_graph(50, 2, 1, rng);
+  for (const Edge& edge : graph.edges()) {
+    const auto near = graph.neighbours(edge.a);
+    const auto others = graph.neighbours(edge.b);
+    EXPECT_TRUE(
+        std::ranges::any_of(near, [&](NodeId node) { return std::binary_search(others.begin(), others.end(), node); }));
+  }
+  EXPECT_EQ(power_law_cluster_graph(1, 2, 1, rng).edge_count(), 0);
+}
+
 TEST(GraphGenerators, CostLengths) {
   Rng rng(4);
   const Graph graph = geometric_graph(300, 6, true, rng);

@@ -62,18 +62,38 @@ Graph erdos_renyi_graph(int nodes, double mean_degree, Rng& rng) {
 }
 
 Graph barabasi_albert_graph(int nodes, int links, Rng& rng) {
-  std::vector<Edge> edges;
+  return power_law_cluster_graph(nodes, links, 0, rng);
+}
+
+Graph power_law_cluster_graph(int nodes, int links, double triads, Rng& rng) {
+  std::vector<std::vector<int>> joined(triads > 0 ? nodes : 0);
   std::vector<int> ends = {0};  // each node once per edge of it, the first node once more
+  std::vector<Edge> edges;
+  std::vector<int> chosen;
+  std::vector<int> near;
+  const auto is_chosen = [&](int other) { return std::ranges::find(chosen, other) != chosen.end(); };
   for (int node = 1; node < nodes; ++node) {
-    std::vector<int> chosen;
+    chosen.clear();
+    int drawn = 0;  // the last one by its degree
     while (std::ssize(chosen) < std::min(links, node)) {
-      const int other = ends[rng.below(static_cast<std::uint32_t>(ends.size()))];
-      if (std::find(chosen.begin(), chosen.end(), other) == chosen.end()) chosen.push_back(other);
+      near.clear();
+      if (triads > 0 && !chosen.empty() && rng.uniform() < triads) {
+        std::ranges::remove_copy_if(joined[drawn], std::back_inserter(near), is_chosen);
+      }
+      if (!near.empty()) {
+        chosen.push_back(near[rng.index(static_cast<int>(near.size()))]);
+        continue;
+      }
+      drawn = ends[rng.below(static_cast<std::uint32_t>(ends.size()))];
+      if (!is_chosen(drawn)) chosen.push_back(drawn);
     }
     for (const int other : chosen) {
       edges.push_back({other, node});
       ends.push_back(other);
       ends.push_back(node);
+      if (triads == 0) continue;
+      joined[other].push_back(node);
+      joined[node].push_back(other);
     }
   }
   return Graph::from_edges(nodes, edges);

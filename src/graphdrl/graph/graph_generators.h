@@ -19,6 +19,11 @@ Graph erdos_renyi_graph(int nodes, double mean_degree, Rng& rng);
 // Albert 1999]. REQUIRES: links >= 1.
 Graph barabasi_albert_graph(int nodes, int links, Rng& rng);
 
+// The same, but after an edge to a node drawn so, each further edge closes a triangle with probability `triads`: it
+// leads to a neighbour of that node. Other edges are drawn as before [Holme and Kim 2002; networkx:
+// powerlaw_cluster_graph]. REQUIRES: links >= 1, 0 <= triads <= 1.
+Graph power_law_cluster_graph(int nodes, int links, double triads, Rng& rng);
+
 // A ring whose nodes are joined to the next `reach` ones on both sides; each edge is led elsewhere with probability
 // `rewired` [Watts and Strogatz 1998]. REQUIRES: reach >= 1, 0 <= rewired <= 1.
 Graph watts_strogatz_graph(int nodes, int reach, double rewired, Rng& rng);
