@@ -124,5 +124,31 @@ TEST(GridGenerators, MazesReachAThousandCellsASide) {
   EXPECT_EQ(dead_ends(map), 0);
 }
 
+TEST(GridGenerators, RoomGridsHaveADoorInEachWall) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Rng rng(seed);
+    const GridMap rooms = room_grid_map(9, 14, 4, 1, rng);  // 2 rows of 3 rooms
+    EXPECT_EQ(free_cells(rooms), 6 * 16 + 7);
+    EXPECT_EQ(free_edges(rooms), 6 * 24 + 7 * 2) << "a door is on the way between two rooms";
+    EXPECT_EQ(parts(rooms), 1);
+  }
+}
+
+TEST(GridGenerators, RoomGridsKeepTheirLargestPart) {
+  Rng rng(1);
+  EXPECT_EQ(free_cells(room_grid_map(9, 14, 4, 0, rng)), 16);
+  EXPECT_EQ(free_cells(room_grid_map(7, 7, 4, 1, rng)), 36 + 4) << "rooms of 4 by 4, 4 by 2, 2 by 4 and 2 by 2 cells";
+  EXPECT_EQ(free_cells(room_grid_map(5, 5, 4, 1, rng)), 16) << "no door where nothing is behind the wall";
+  int least = 1000;
+  int most = 0;
+  for (int i = 0; i < 20; ++i) {
+    const GridMap rooms = room_grid_map(24, 24, 4, 0.6, rng);
+    EXPECT_EQ(parts(rooms), 1);
+    least = std::min(least, free_cells(rooms));
+    most = std::max(most, free_cells(rooms));
+  }
+  EXPECT_LT(least, most);
+}
+
 }  // namespace
 }  // namespace graphdrl

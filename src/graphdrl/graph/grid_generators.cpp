@@ -266,4 +266,20 @@ GridMap streets_map(int rows, int cols, int max_street, int max_block, double sq
   return largest_component(map);
 }
 
+GridMap room_grid_map(int rows, int cols, int room, double doors, Rng& rng) {
+  GridMap map = blocked_map(rows, cols);
+  for (int top = 0; top < rows; top += room + 1) {
+    for (int left = 0; left < cols; left += room + 1) {
+      const int height = std::min(room, rows - top);
+      const int width = std::min(room, cols - left);
+      fill(map, {top, left, height, width}, false);
+      const bool room_on_right = left + room + 1 < cols;
+      const bool room_below = top + room + 1 < rows;
+      if (room_on_right && rng.uniform() < doors) map.blocked[map.node({top + rng.index(height), left + room})] = false;
+      if (room_below && rng.uniform() < doors) map.blocked[map.node({top + room, left + rng.index(width)})] = false;
+    }
+  }
+  return largest_component(map);
+}
+
 }  // namespace graphdrl

@@ -36,6 +36,11 @@ GridMap house_map(int rows, int cols, int max_room, double furniture, Rng& rng);
 // blocks is open. Connected. REQUIRES: max_street, max_block >= 1.
 GridMap streets_map(int rows, int cols, int max_street, int max_block, double squares, Rng& rng);
 
+// Rooms of `room` cells a side in rows and columns, cut off at the border, with walls one cell thick between them, as
+// in the four rooms of [Sutton, Precup and Singh 1999]. The wall between two rooms has a door at a random place with
+// probability `doors`. Only the largest connected part stays free. REQUIRES: room >= 1.
+GridMap room_grid_map(int rows, int cols, int room, double doors, Rng& rng);
+
 // The same map with everything but its largest connected part blocked; of equally large ones that of the lowest cell.
 GridMap largest_component(const GridMap& map);
 
