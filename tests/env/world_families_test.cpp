@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string_view>
 
 #include "graphdrl/graph/components.h"
+#include "graphdrl/io/readers.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -76,6 +78,49 @@ TEST(WorldFamilies, HaveFrozenSplits) {
                      "barabasi-albert", "watts-strogatz", "geometric"}),
             5772697023042949595u);
   EXPECT_EQ(hash_of({"open", "caves", "houses", "streets"}), 8388664832629331339u);
+  EXPECT_EQ(hash_of({"room-grid", "power-law-cluster", "balanced-tree", "ladder", "hexagons", "triangles", "torus",
+                     "caveman", "road"}),
+            5039671854537943988u);
+}
+
+TEST(WorldFamilies, HavePlacesWhereTheyHaveALayout) {
+  const std::set<std::string_view> placed = {"balanced-tree", "ladder",  "hexagons", "triangles",
+                                             "torus",         "caveman", "road"};
+  for (const WorldFamily& family : world_families()) {
+    if (family.grid) continue;
+    const World world = split_world({std::string(family.name), 30, true, true}, Split::kTest, 0);
+    EXPECT_EQ(world.has_places(), placed.contains(family.name)) << family.name;
+    if (!world.has_places()) continue;
+    const std::string text = format_node_link(world.to_map());
+    EXPECT_EQ(parse_node_link(text, "text", {}).places.points, world.to_map().places.points) << family.name;
+  }
+}
+
+TEST(WorldFamilies, HaveTheSizeAskedFor) {
+  const auto nodes = [](std::string family, int size) {
+    return split_world({std::move(family), size}, Split::kTest, 0).node_count();
+  };
+  for (const int size : {2, 3, 4, 5, 6, 7, 12, 50, 51, 200}) {
+    for (const char* const family : {"power-law-cluster", "balanced-tree", "caveman"}) {
+      EXPECT_EQ(nodes(family, size), size) << family;
+    }
+    EXPECT_EQ(nodes("ladder", size), size / 2 * 2);
+    for (const char* const family : {"hexagons", "triangles", "torus"}) {
+      const int rows = static_cast<int>(std::sqrt(size));
+      EXPECT_EQ(nodes(family, size), size / rows * rows) << family;
+    }
+  }
+}
+
+TEST(WorldFamilies, MeasureRoadsInWholeMetres) {
+  const World world = split_world({"road", 200, true}, Split::kTest, 0);
+  EXPECT_EQ(world.unit(), "m");
+  for (const Edge& edge : world.open().edges()) {
+    const Point a = world.place(edge.a);
+    const Point b = world.place(edge.b);
+    EXPECT_EQ(edge.cost, std::floor(edge.cost));
+    EXPECT_GE(edge.cost, std::hypot(a.x - b.x, a.y - b.y) - 1e-6);
+  }
 }
 
 TEST(WorldFamilies, SayWhatTheyDoNotHave) {

@@ -199,7 +199,7 @@ const std::map<std::string, Split> kSplits = {
 // The file of a world: a grid as text, a graph as node-link JSON.
 std::string format_world(const World& world) {
   if (world.is_grid()) return format_ascii_map(*world.map());
-  return format_node_link({.graph = world.graph(), .blocked = world.blocked()});
+  return format_node_link(world.to_map());
 }
 
 void generate_maps(const GenerateOptions& options) {
@@ -227,9 +227,9 @@ void generate_maps(const GenerateOptions& options) {
 }
 
 std::string describe_families() {
-  std::string text = "Families; sizes are cells a side or nodes:\n";
+  std::string text = "Families; sizes are cells a side or nodes, of some graphs a few less:\n";
   for (const WorldFamily& family : world_families()) {
-    text += fmt::format("  {:16} {:6} {}\n", family.name, family.grid ? "cells" : "nodes", family.description);
+    text += fmt::format("  {:17} {:6} {}\n", family.name, family.grid ? "cells" : "nodes", family.description);
   }
   return text;
 }

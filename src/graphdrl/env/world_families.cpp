@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/graph/graph_generators.h"
 #include "graphdrl/graph/grid_generators.h"
+#include "graphdrl/graph/placed_graph_generators.h"
 
 namespace graphdrl {
 namespace {
@@ -20,7 +22,7 @@ constexpr double kMaxBlocked = 0.9;
 constexpr int kMostCost = 5;
 constexpr double kOneWayShare = 0.3;
 
-constexpr std::array<WorldFamily, 14> kFamilies = {{
+constexpr std::array<WorldFamily, 23> kFamilies = {{
     {"obstacles", true, "each cell an obstacle with a probability from 0.1 to 0.4, half the cells free at least"},
     {"maze", true, "perfect mazes, corridors one cell wide; odd sides"},
     {"loop-maze", true, "mazes, each inner wall between two rooms opened with a probability from 0.05 to 0.2"},
@@ -31,11 +33,23 @@ constexpr std::array<WorldFamily, 14> kFamilies = {{
     {"houses", true,
      "rooms of at most 3 to 8 cells a side, furniture on up to a quarter; 0.4 of the cells free at least"},
     {"streets", true, "1 to 3 cells wide, between blocks of at most 2 to 7 a side, up to 0.4 of them squares"},
+    {"room-grid", true,
+     "rooms of 4 to 6 cells a side in rows, 0.8 of the walls with a door; 0.45 of the cells free at least"},
     {"tree", false, "drawn uniformly from all trees"},
     {"erdos-renyi", false, "mean degree from 2.5 to 4, the largest part"},
     {"barabasi-albert", false, "each node joins by 1 or 2 edges"},
     {"watts-strogatz", false, "a ring of degree 4, 0.1 to 0.3 of the edges led elsewhere, the largest part"},
     {"geometric", false, "mean degree from 4 to 7, the largest part; costs are lengths where there are any"},
+    {"power-law-cluster", false, "each node joins by 2 to 4 edges, 0.4 to 0.9 of the further ones close triangles"},
+    {"balanced-tree", false, "each node with 2 to 5 children, level by level"},
+    {"ladder", false, "two rows, each node joined to that opposite"},
+    {"hexagons", false, "a square of a honeycomb"},
+    {"triangles", false, "a square of a triangular lattice"},
+    {"torus", false, "a square lattice without a border"},
+    {"caveman", false, "a ring of cliques of about 4 to 40 nodes, one edge of each led to the one before"},
+    {"road", false,
+     "a square of crossings 100 m apart, moved; 0.65 to 0.8 of the streets and some diagonals, the largest part; costs "
+     "are lengths, whole metres, where there are any"},
 }};
 
 double draw(double low, double high, Rng& rng) {
@@ -82,6 +96,10 @@ GridMap grid_of(const WorldSpec& spec, Rng& rng) {
       return streets_map(side, side, draw_int(1, 3, rng), block, squares, rng);
     });
   }
+  if (spec.family == "room-grid") {
+    return with_free_cells(0.45 * side * side,
+                           [&] { return room_grid_map(side, side, draw_int(4, 6, rng), 0.8, rng); });
+  }
   int rows = side;  // "open"
   int cols = draw_int(2, side, rng);
   if (rng.below(2) == 0) std::swap(rows, cols);
@@ -96,7 +114,34 @@ Graph graph_of(const WorldSpec& spec, Rng& rng) {
   if (spec.family == "watts-strogatz") {
     return largest_part(watts_strogatz_graph(nodes, 2, draw(0.1, 0.3, rng), rng));
   }
-  return largest_part(geometric_graph(nodes, draw(4, 7, rng), spec.weighted, rng));
+  if (spec.family == "geometric") return largest_part(geometric_graph(nodes, draw(4, 7, rng), spec.weighted, rng));
+  const int links = draw_int(2, 4, rng);  // "power-law-cluster"
+  return power_law_cluster_graph(nodes, links, draw(0.4, 0.9, rng), rng);
+}
+
+// A graph with places, of this many nodes or a few less, those of full rows; of another family none.
+std::optional<GraphMap> placed_graph_of(const WorldSpec& spec, Rng& rng) {
+  const int nodes = spec.size;
+  const int rows = static_cast<int>(std::sqrt(nodes));
+  const int cols = nodes / rows;
+  if (spec.family == "balanced-tree") return balanced_tree_map(nodes, draw_int(2, 5, rng));
+  if (spec.family == "ladder") return ladder_map(nodes / 2);
+  if (spec.family == "hexagons") return hexagons_map(rows, cols);
+  if (spec.family == "triangles") return triangles_map(rows, cols);
+  if (spec.family == "torus") return torus_map(rows, cols);
+  if (spec.family == "caveman") {
+    const int caves = nodes / draw_int(4, 40, rng);
+    return caveman_map(nodes, nodes < 6 ? 1 : std::clamp(caves, 2, nodes / 3));
+  }
+  if (spec.family == "road") return road_map(rows, cols, draw(0.65, 0.8, rng), spec.weighted, rng);
+  return std::nullopt;
+}
+
+GraphMap graph_map_of(const WorldSpec& spec, Rng& rng) {
+  if (const std::optional<GraphMap> placed = placed_graph_of(spec, rng)) return shuffled(*placed, rng);
+  Graph graph = graph_of(spec, rng);
+  std::vector<bool> blocked(graph.node_count());
+  return {.graph = std::move(graph), .blocked = std::move(blocked)};
 }
 
 // The same number everywhere for the same text.
@@ -148,11 +193,11 @@ const WorldFamily& family_of(const WorldSpec& spec) {
 
 World random_world(const WorldSpec& spec, Rng& rng) {
   if (family_of(spec).grid) return World(spec.name(), grid_of(spec, rng));
-  Graph graph = graph_of(spec, rng);
-  if (spec.weighted && spec.family != "geometric") graph = with_random_costs(graph, kMostCost, rng);
-  if (spec.directed) graph = with_one_way_edges(graph, kOneWayShare, rng);
-  std::vector<bool> blocked(graph.node_count());
-  return World(spec.name(), std::move(graph), std::move(blocked));
+  GraphMap map = graph_map_of(spec, rng);
+  const bool lengths_cost = spec.family == "geometric" || spec.family == "road";
+  if (spec.weighted && !lengths_cost) map.graph = with_random_costs(map.graph, kMostCost, rng);
+  if (spec.directed) map.graph = with_one_way_edges(map.graph, kOneWayShare, rng);
+  return World(spec.name(), std::move(map));
 }
 
 World split_world(const WorldSpec& spec, Split split, int index) {

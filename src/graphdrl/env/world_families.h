@@ -17,8 +17,9 @@ struct WorldFamily {
   std::string_view description;  // with the parameters' ranges
 };
 
-// obstacles, maze, loop-maze, braided-maze, rooms, open, caves, houses, streets, tree, erdos-renyi, barabasi-albert,
-// watts-strogatz, geometric
+// obstacles, maze, loop-maze, braided-maze, rooms, open, caves, houses, streets, room-grid, tree, erdos-renyi,
+// barabasi-albert, watts-strogatz, geometric, power-law-cluster; with places, nodes numbered in random order:
+// balanced-tree, ladder, hexagons, triangles, torus, caveman, road
 std::span<const WorldFamily> world_families();
 
 struct WorldSpec {

@@ -61,7 +61,7 @@ AnyOptionField field(const char* key, T O::*member, const Check& check, const ch
 std::vector<AnyOptionField> shared_fields() {
   return {
       field("preset", &O::preset, one_of({kExplorerPreset, kPaperPreset}),
-            "What to train: explorer, on random worlds of every kind, or paper (also chosen by its own options)"),
+            "What to train: explorer, on random worlds of many kinds, or paper (also chosen by its own options)"),
       field("seed", &O::seed, anything,
             "The same seed gives the same policy file, byte for byte (same build and machine; on the CPU)"),
       field("batch_size", &O::batch_size, whole(1, 65'536), "States or transitions per learning step"),
