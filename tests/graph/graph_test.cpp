@@ -206,5 +206,43 @@ TEST(Graph, KnowsTheCostsOfACompleteGraph) {
   }
 }
 
+TEST(Graph, GrowsIntoTheSameGraph) {
+  Rng rng(8);
+  for (const EdgeKind kind : {EdgeKind::kUndirected, EdgeKind::kDirected}) {
+    for (const double step : {1.0, 0.5}) {
+      std::vector<Edge> edges;
+      for (NodeId a = 0; a < 30; ++a) {
+        for (NodeId b = 0; b < a; ++b) {
+          if (rng.uniform() < 0.4) edges.push_back({a, b, step == 1 ? 1 : step * (1 + rng.index(5))});
+        }
+      }
+      for (int left = static_cast<int>(edges.size()); left > 1; --left) std::swap(edges[rng.index(left)], edges[left - 1]);
+      Graph grown(kind);
+      for (NodeId node = 0; node < 30; ++node) EXPECT_EQ(grown.add_node(), node);
+      for (const Edge& edge : edges) grown.add_edge(edge);
+      const Graph made = Graph::from_edges(30, edges, kind);
+      EXPECT_EQ(grown.edge_count(), made.edge_count());
+      EXPECT_EQ(grown.weighted(), made.weighted());
+      EXPECT_EQ(grown.min_cost(), made.min_cost());
+      EXPECT_EQ(grown.max_cost(), made.max_cost());
+      EXPECT_NEAR(grown.mean_cost(), made.mean_cost(), 1e-12);
+      EXPECT_EQ(grown.integer_costs(), made.integer_costs());
+      for (NodeId node = 0; node < 30; ++node) {
+        ASSERT_TRUE(std::ranges::equal(grown.neighbours(node), made.neighbours(node)));
+        for (int i = 0; i < made.degree(node); ++i) EXPECT_EQ(grown.cost(node, i), made.cost(node, i));
+      }
+    }
+  }
+}
+
+TEST(Graph, TakesEdgesAtAPlace) {
+  Graph graph(EdgeKind::kUndirected);
+  for (int node = 0; node < 4; ++node) graph.add_node();
+  graph.add_edge({0, 1});
+  graph.add_edge({0, 2}, {.of_b = 0, .of_a = 0});
+  graph.add_edge({0, 3}, {.of_b = 1, .of_a = 0});
+  EXPECT_THAT(graph.neighbours(0), ElementsAre(2, 3, 1));
+}
+
 }  // namespace
 }  // namespace graphdrl

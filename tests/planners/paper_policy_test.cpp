@@ -69,8 +69,8 @@ TEST(Registry, MakesPoliciesByNameAndFile) {
   EXPECT_NE(make_policy(file, 1), nullptr);
   EXPECT_EQ(parse_policy(file).label, "mine");
   EXPECT_THAT(error_of([] { make_policy("best", 1); }),
-              HasSubstr("expected search[:ITERATIONS], beam[:W], guided[:W[:FILE]], dfs, exact, explorer, nearest, "
-                        "random, random-walk or a "
+              HasSubstr("expected search[:ITERATIONS], beam[:W], guided[:W[:FILE]], dfs, exact, explorer, frontier, "
+                        "nearest, open, pocket, random, random-walk or a "
                         "policy file, got 'best'"));
   for (const char* const name : {"search:0", "search:", "search:x", "search:-1", "search:1.5"}) {
     EXPECT_THAT(error_of([&] { make_policy(name, 1); }), HasSubstr("search:N with N from 1 to ")) << name;

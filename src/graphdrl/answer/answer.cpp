@@ -54,7 +54,12 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   const Stopwatch watch;
   const Clock bound_clock = clock.share(kBoundShare);
   const Clock plan_clock = clock.share(kPlanShare);
-  Answer answer{.world = world, .task = task, .policy = request.policy, .plan = {}};
+  Answer answer{.world = world,
+                .task = task,
+                .policy = request.policy,
+                .plan = {},
+                .reveal = request.reveal,
+                .score = request.score};
   std::unique_ptr<Planner> planner;
   std::unique_ptr<Policy> policy;
   if (request.own_planner) {
@@ -64,12 +69,22 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   } else {
     const PolicySpec spec = spec_of(request);
     answer.policy = spec.label;
-    planner = make_planner(spec, request.seed);
-    if (planner == nullptr) policy = make_policy(spec, request.seed);
+    if (request.reveal.all()) planner = make_planner(spec, request.seed);
+    if (planner == nullptr) {
+      policy = request.reveal.all() ? make_policy(spec, request.seed) : make_online_policy(spec, request.seed);
+    }
   }
   const bool bounds = planner != nullptr && planner->bounds();
-  const double bound = bounds ? kNoLimit : max_prize(task, bound_clock);
-  answer.plan = planner != nullptr ? planner->plan(task, plan_clock) : plan_by_steps(world, task, *policy, plan_clock);
+  const double bound = bounds || request.score == Score::kSeen ? kNoLimit : max_prize(task, bound_clock);
+  if (planner != nullptr) {
+    answer.plan = planner->plan(task, plan_clock);
+  } else {
+    const EpisodeOptions options{.action_space = request.reveal.all() ? action_space_of(world) : ActionSpace::kNeighbours,
+                                 .reveal = request.reveal,
+                                 .score = request.score,
+                                 .numbers_seed = request.seed};
+    answer.plan = plan_by_steps(world, task, options, *policy, plan_clock, request.think_s, &answer.discovered);
+  }
   check_plan(world, task, answer.plan);
   answer.plan.settle(bound);
   answer.unreachable = count_unreachable(world, task.start());
@@ -106,7 +121,13 @@ std::vector<std::string> plan_summary(const Answer& answer) {
     lines.push_back(fmt::format("prize {} of {}, {:.1f} %", decimal(plan.prize), decimal(world.total_prize()),
                                 world.percent_of_all(plan.prize)));
   }
-  const char* const what = world.has_prizes() ? "is worth more" : "visits more";
+  const bool hidden = !answer.reveal.all();
+  if (hidden) {
+    lines.push_back(fmt::format("seen {} of {} nodes, {:.1f} %", answer.discovered.nodes.size(), world.valid_count(),
+                                100.0 * static_cast<double>(answer.discovered.nodes.size()) / world.valid_count()));
+  }
+  if (answer.score == Score::kSeen) return lines;
+  const std::string what = fmt::format("{}{}", hidden ? "that knew the map " : "", world.has_prizes() ? "is worth more" : "visits more");
   if (plan.optimal) {
     lines.push_back(fmt::format("optimal: no walk {}", what));
   } else {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
@@ -21,6 +22,9 @@ struct Answer {
   Plan plan;
   int unreachable = 0;  // valid nodes that no walk can reach, whatever it spends
   double elapsed_s = 0;
+  Reveal reveal = {};           // what was not known beforehand …
+  Score score = Score::kVisited;
+  Discovered discovered = {};   // … and how it became known
 
   // By any walk, at most: all valid nodes where the plan has no bound. REQUIRES: the world has no prizes.
   int max_visited() const { return static_cast<int>(std::clamp<double>(plan.bound, 0, world.valid_count())); }
@@ -30,12 +34,16 @@ struct PlanRequest {
   std::string policy = "search";                // as parse_policy() takes it
   std::uint64_t seed = 1;                       // of `search` and of random policies
   std::optional<std::int64_t> iterations = {};  // of `search`, instead of those in its name
+  Reveal reveal = {};                           // unless all is known, the policy explores instead of planning
+  Score score = Score::kVisited;
+  double think_s = kNoLimit;  // of an exploration, for a choice
   // One of these instead of a policy that has a name here; `policy` is then what it is called.
   std::function<std::unique_ptr<Planner>()> own_planner = {};
   std::function<std::unique_ptr<Policy>()> own_policy = {};
 };
 
-// Plans one walk and bounds it, both until the clock passes. Throws Error on a policy that there is not.
+// Plans one walk and bounds it, both until the clock passes. A walk that explores is bounded by what one could do that
+// knew the map; where what is seen counts, it is not. Throws Error on a policy that there is not.
 Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock = {});
 
 // Bounds a walk of any origin, as tightly as `search` does without a time limit, and counts what no walk can reach.

@@ -18,6 +18,7 @@ void add_bench_command(CLI::App& app);
 void add_check_command(CLI::App& app);
 void add_completion_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
+void add_explore_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_inspect_command(CLI::App& app);
 void add_maps_command(CLI::App& app);

@@ -10,15 +10,28 @@
 namespace graphdrl {
 namespace {
 
+const std::vector<std::string> kLadder = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
+const std::vector<std::string> kOnlineLadder = {"random-walk", "dfs", "nearest", "pocket", "open"};
+
 struct EvaluateOptions {
   std::vector<std::string> maps = {"paper"};
   MapOptions reading;
   std::string budget;
-  ComparisonOptions comparison = {.policies = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"}};
+  ComparisonOptions comparison = {.policies = kLadder};
+  std::string reveal = "all";
+  std::string score = "visited";
   bool json = false;
 };
 
+// {mean, ci95} or null.
+Json mean_json(const std::optional<Summary>& summary) {
+  if (!summary) return {};
+  return {{"mean", summary->mean},
+          {"ci95", summary->ci95 ? Json({summary->ci95->low, summary->ci95->high}) : Json()}};
+}
+
 Json to_json(const Comparison& comparison) {
+  const bool hidden = !comparison.options.reveal.all();
   Json rows = Json::array();
   for (const ComparisonRow& row : comparison.rows) {
     Json json;
@@ -35,6 +48,10 @@ Json to_json(const Comparison& comparison) {
     json["optimum"] = or_null(row.optimum);
     json["paper"] = Json();
     if (row.paper) json["paper"] = {{"mean", row.paper->mean}, {"std", row.paper->std}, {"best", row.paper->best}};
+    if (hidden) {
+      json["known"] = mean_json(row.known);
+      json["price_of_ignorance"] = mean_json(row.price);
+    }
     rows.push_back(std::move(json));
   }
   Json overall = Json::array();
@@ -44,13 +61,33 @@ Json to_json(const Comparison& comparison) {
                        {"mean", or_null(line.mean)},
                        {"ratio_to_optimum", or_null(line.ratio_to_optimum)}});
   }
-  return {{"rows", rows}, {"overall", overall}};
+  Json document = {{"rows", rows}, {"overall", overall}};
+  if (!hidden) return document;
+  Json& families = document["families"] = Json::array();
+  for (const FamilyRow& row : comparison.families) {
+    families.push_back({{"family", row.family},
+                        {"policy", row.policy},
+                        {"maps", row.maps},
+                        {"coverage", mean_json(row.coverage)},
+                        {"known", mean_json(row.known)},
+                        {"price_of_ignorance", mean_json(row.price)}});
+  }
+  return document;
 }
 
 void evaluate(const EvaluateOptions& options) {
   ComparisonOptions comparison = options.comparison;
   if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
-  const Comparison result = compare(load_worlds(options.maps, options.reading), comparison);
+  comparison.reveal = Reveal::parse(options.reveal);
+  comparison.score = options.score == "seen" ? Score::kSeen : Score::kVisited;
+  if (!comparison.reveal.all() && comparison.policies == kLadder) comparison.policies = kOnlineLadder;
+  std::vector<World> worlds;
+  for (const std::string& maps : options.maps) {
+    const std::vector<World> more = load_worlds({maps}, options.reading);
+    worlds.insert(worlds.end(), more.begin(), more.end());
+    if (!comparison.reveal.all()) comparison.families.resize(worlds.size(), maps);
+  }
+  const Comparison result = compare(worlds, comparison);
   if (options.json) return print_json(to_json(result));
   print_text(format_comparison(result));
 }
@@ -79,6 +116,21 @@ void add_evaluate_command(CLI::App& app) {
                                     ->capture_default_str();
   command.add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
       ->excludes(episodes);
+  CLI::Option* const reveal = add_text_option(
+      command, "--reveal", options->reveal, "R",
+      "What is known of a map: all of it, or what visits show, edges, radius:R or sight:R, as of explore; then a table by "
+      "what --maps names");
+  reveal->capture_default_str();
+  command.add_option("--score", options->score, "What counts of unknown maps: nodes visited, or nodes seen")
+      ->check(CLI::IsMember({"visited", "seen"}))
+      ->needs(reveal)
+      ->capture_default_str();
+  command
+      .add_option("--price", options->comparison.price_s,
+                  "The price of ignorance, too: seconds that search has for each walk that knows the map")
+      ->check(CLI::PositiveNumber)
+      ->needs(reveal)
+      ->type_name("S");
   add_seed_option(command, options->comparison.seed, "For the starts and for random policies");
   command.add_flag("--json", options->json, "Print one JSON document");
   add_map_options(command, options->reading);

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   graphdrl::add_train_command(app, learners);
   graphdrl::add_tune_command(app, learners);
   graphdrl::add_evaluate_command(app);
+  graphdrl::add_explore_command(app);
   graphdrl::add_plan_command(app);
   graphdrl::add_check_command(app);
   graphdrl::add_report_command(app);

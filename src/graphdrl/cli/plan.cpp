@@ -22,12 +22,17 @@ namespace {
 
 constexpr double kProgressAfterS = 1;
 
+// What `plan` and `explore` share, and what `explore` has beside it.
 struct PlanOptions {
   std::string map;
   MapOptions reading;
   AskedText asked;
   PlanRequest request;
   std::optional<double> time_limit_s;
+  std::string reveal = "all";
+  std::string score = "visited";
+  std::string until;
+  std::optional<double> think_time_s;
   std::vector<std::string> out;
   bool walk = false;
   bool json = false;
@@ -73,7 +78,13 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
 void plan(const PlanOptions& options) {
   for (const std::string& file : options.out) check_plan_file(file);
   const World world = load_one_world(options.map, options.reading);
-  const Task task(world, asked_of(world, options.asked));
+  Asked asked = asked_of(world, options.asked);
+  if (!options.until.empty()) asked.budget = Budget(kNoLimit);
+  const Task task(world, asked);
+  PlanRequest request = options.request;
+  request.reveal = Reveal::parse(options.reveal);
+  request.score = options.score == "seen" ? Score::kSeen : Score::kVisited;
+  if (options.think_time_s) request.think_s = *options.think_time_s;
   for (const std::string& file : options.out) check_plan_file(world, file);
   catch_stop_signals();  // the best walk so far is printed
   ProgressDisplay display("visited", /*first=*/0, kProgressAfterS);
@@ -85,7 +96,7 @@ void plan(const PlanOptions& options) {
                       static_cast<double>(progress.visited) / valid);
   };
   const Clock clock(options.time_limit_s, &stop_flag(), &listener);
-  const Answer answer = make_plan(world, task, options.request, clock);
+  const Answer answer = make_plan(world, task, request, clock);
   display.finish();
   std::vector<std::function<void()>> outputs;
   for (const std::string& file : options.out) outputs.emplace_back([&] { write_plan(answer, file); });
@@ -97,25 +108,42 @@ void plan(const PlanOptions& options) {
   if (stop_signal() != 0) throw CLI::RuntimeError(128 + stop_signal());
 }
 
+// Those of both commands.
+void add_shared_options(CLI::App& command, PlanOptions& options) {
+  command
+      .add_option("map", options.map, "paper:a to paper:j, or a file in any format of `graphdrl maps convert --help`")
+      ->required()
+      ->type_name("MAP");
+  add_text_option(command, "--budget", options.asked.budget, "B",
+                  "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's");
+  add_text_option(
+      command, "--start", options.asked.start, "S",
+      "A node id, or row,col on a grid; in a graph with labels a label, or #N for node id N. The default is "
+      "the file's, else the first valid node");
+  add_text_option(command, "--end", options.asked.end, "E",
+                  "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, else "
+                  "anywhere");
+  command.add_option("--policy", options.request.policy, policy_names())->type_name("P")->capture_default_str();
+}
+
+void add_shared_outputs(CLI::App& command, PlanOptions& options) {
+  add_text_option(
+      command, "--out", options.out, "FILE",
+      "Also write the plan to this file, in the format of its ending: " + plan_file_endings() + "; may be given again");
+  CLI::Option* const json = command.add_flag("--json", options.json, "Print one JSON document");
+  command.add_flag("--walk", options.walk, "Print the walk instead of a picture, a node a line, as `check` reads it")
+      ->excludes(json);
+  add_map_options(command, options.reading);
+  add_threads_option(command);
+  add_memory_limit_option(command);
+}
+
 }  // namespace
 
 void add_plan_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
-  command
-      .add_option("map", options->map, "paper:a to paper:j, or a file in any format of `graphdrl maps convert --help`")
-      ->required()
-      ->type_name("MAP");
-  add_text_option(command, "--budget", options->asked.budget, "B",
-                  "What the walk may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's");
-  add_text_option(
-      command, "--start", options->asked.start, "S",
-      "A node id, or row,col on a grid; in a graph with labels a label, or #N for node id N. The default is "
-      "the file's, else the first valid node");
-  add_text_option(command, "--end", options->asked.end, "E",
-                  "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, else "
-                  "anywhere");
-  command.add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
+  add_shared_options(command, *options);
   command
       .add_option("--iterations", options->request.iterations,
                   "Of search: how many steps to take in all; the default depends on the size of the world")
@@ -125,16 +153,37 @@ void add_plan_command(CLI::App& app) {
                   "Seconds for a plan, the bound included: search goes on until then, beams search wider and wider, "
                   "others stop with what they have")
       ->type_name("S");
-  add_text_option(
-      command, "--out", options->out, "FILE",
-      "Also write the plan to this file, in the format of its ending: " + plan_file_endings() + "; may be given again");
   add_seed_option(command, options->request.seed, "For search and for random policies");
-  CLI::Option* const json = command.add_flag("--json", options->json, "Print one JSON document");
-  command.add_flag("--walk", options->walk, "Print the walk instead of a picture, a node a line, as `check` reads it")
-      ->excludes(json);
-  add_map_options(command, options->reading);
-  add_threads_option(command);
-  add_memory_limit_option(command);
+  add_shared_outputs(command, *options);
+  command.callback([options] { plan(*options); });
+}
+
+void add_explore_command(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand(
+      "explore", "Explore a map that is not known beforehand, and say what knowing it would have brought");
+  const auto options = std::make_shared<PlanOptions>();
+  options->reveal = "edges";
+  options->request.policy = "pocket";
+  add_shared_options(command, *options);
+  add_text_option(command, "--reveal", options->reveal, "R",
+                  "What a visit shows: edges, those of the node; radius:R, all within that cost; sight:R on grids, what "
+                  "straight lines of that length meet; all, the whole map")
+      ->capture_default_str();
+  command.add_option("--score", options->score, "What counts: nodes visited, or nodes seen")
+      ->check(CLI::IsMember({"visited", "seen"}))
+      ->capture_default_str();
+  CLI::Option* const until =
+      command.add_option("--until", options->until, "Instead of a budget: covered, until nothing is left that is known")
+          ->check(CLI::IsMember({"covered"}));
+  until->excludes(command.get_option("--budget"));
+  command.add_option("--think-time", options->think_time_s, "Seconds for each choice, of policies that plan")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  command.add_option("--time-limit", options->time_limit_s, "Seconds in all; then straight to where the walk must end")
+      ->type_name("S");
+  add_seed_option(command, options->request.seed,
+                  "For search, for random policies, and for the numbers by which unknown nodes are known");
+  add_shared_outputs(command, *options);
   command.callback([options] { plan(*options); });
 }
 

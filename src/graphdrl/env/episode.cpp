@@ -21,12 +21,14 @@ NodeId any_start(const World& world, const End& end) {
 Episode::Episode(const World& world, const Task& task, const EpisodeOptions& options)
     : world_(world),
       options_(options),
+      asked_(task),
       task_(task),
       grid_(options.action_space == ActionSpace::kDirections && world.is_grid() ? &world.view().grid() : nullptr),
       most_free_moves_(kFreeMovesPerNode * std::int64_t{world.node_count()}),
-      visits_(world.node_count()) {
-  if (options.action_space == ActionSpace::kDirections && grid_ == nullptr) {
-    throw Error({.what = "directions need a grid map", .where = world.name()});
+      visits_(world.node_count()),
+      visited_(world.node_count()) {
+  if (options.action_space == ActionSpace::kDirections && (grid_ == nullptr || !options.reveal.all())) {
+    throw Error({.what = "directions need a grid map that is known", .where = world.name()});
   }
   reset(task.start());
 }
@@ -34,30 +36,68 @@ Episode::Episode(const World& world, const Task& task, const EpisodeOptions& opt
 Episode::Episode(const World& world, const EpisodeOptions& options)
     : Episode(world, Task(world, any_start(world, options.end), options.budget, options.end), options) {}
 
-void Episode::reset(NodeId start) {
-  task_.start_at(start);
-  std::fill(visits_.begin(), visits_.end(), 0);
+void Episode::reset(NodeId start, std::uint64_t number) {
+  if (options_.reveal.all()) {
+    task_.start_at(start);
+    std::fill(visits_.begin(), visits_.end(), 0);
+    visited_.clear();
+    visited_.insert(start);
+  } else {
+    asked_.start_at(start);
+    begin_hidden(number);
+    start = task_.start();
+  }
   walk_.assign(1, start);
   walk_hash_ = extended_walk_hash(kEmptyWalkHash, start);
   position_ = start;
   visits_[start] = 1;
   visited_count_ = 1;
-  prize_ = world_.prize(start);
+  prize_ = view().prize(start);
   spent_ = 0;
   free_moves_ = 0;
+  settle_end();
+}
+
+void Episode::begin_hidden(std::uint64_t number) {
+  const std::uint64_t seed = derive_seed(options_.numbers_seed, number);
+  hidden_ = std::make_shared<HiddenWorld>(world_, options_.reveal, options_.score, asked_.start(), seed);
+  const NodeId start = hidden_->known_as(asked_.start());
+  task_ = asked_.ends_anywhere()
+              ? asked_.on(hidden_->view(), start, kNoNode, nullptr)
+              : asked_.on(hidden_->view(), start, start, hidden_->discovery().keep_costs_to(start));
+  visits_.assign(view().node_count(), 0);
+}
+
+std::vector<NodeId> Episode::walk_in_world() const {
+  std::vector<NodeId> walk(walk_.size());
+  std::ranges::transform(walk_, walk.begin(), [&](NodeId node) { return in_world(node); });
+  return walk;
+}
+
+// An end that is a node becomes the end once the walk knows it and can pay for the way there.
+void Episode::settle_end() {
+  if (!hidden() || asked_.ends_anywhere()) return;
+  const NodeId end = hidden_->known_as(asked_.end());
+  if (end == kNoNode || end == task_.end()) return;
+  const auto costs = hidden_->discovery().keep_costs_to(end);
+  if ((*costs)[position_] <= task_.limit() - spent_) {
+    task_ = asked_.on(view(), task_.start(), end, costs);
+  } else {
+    task_ = asked_.on(view(), task_.start(), task_.end(), hidden_->discovery().keep_costs_to(task_.end()));
+  }
 }
 
 StepResult Episode::step(int action) {
   if (grid_ != nullptr) return enter(grid_->direction_target(position_, action), 1.0);
-  return enter(world_.open_neighbours(position_)[action], world_.open().cost(position_, action));
+  return enter(view().open_neighbours(position_)[action], view().open().cost(position_, action));
 }
 
 bool Episode::can_stay() const {
-  return world_.open().mean_cost() + task_.cost_to_end(position_) <= task_.limit() - spent_;
+  return view().open().mean_cost() + task_.cost_to_end(position_) <= task_.limit() - spent_;
 }
 
 StepResult Episode::stay() {
-  return enter(position_, world_.open().mean_cost());
+  return enter(position_, view().open().mean_cost());
 }
 
 StepResult Episode::enter(NodeId next, double cost) {
@@ -65,13 +105,22 @@ StepResult Episode::enter(NodeId next, double cost) {
   const std::uint32_t visits_before = visits_[next]++;
   const bool first_visit = visits_before == 0;
   visited_count_ += first_visit;
-  if (first_visit) prize_ += world_.prize(next);
   position_ = next;
+  if (first_visit) {
+    prize_ += view().prize(next);
+    if (!hidden()) {
+      visited_.insert(next);
+    } else {
+      hidden_->visit(next);
+      visits_.resize(view().node_count());
+    }
+  }
   walk_.push_back(next);
   walk_hash_ = extended_walk_hash(walk_hash_, next);
   const double spent_before = spent_;
   spent_ += cost;
   free_moves_ = first_visit || spent_ > spent_before ? 0 : free_moves_ + 1;
+  if (first_visit) settle_end();
   return {.reward = reward_of(blocked, visits_before), .blocked = blocked, .first_visit = first_visit};
 }
 
@@ -79,7 +128,7 @@ double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
   const bool first_visit = visits_before == 0;
   const double bonus = first_visit && terminal() ? kFullCoverageBonus : 0.0;
   if (options_.reward == RewardKind::kCoverageGain) {
-    return first_visit && world_.total_prize() > 0 ? world_.prize(position_) / world_.total_prize() + bonus : bonus;
+    return first_visit && world_.total_prize() > 0 ? view().prize(position_) / world_.total_prize() + bonus : bonus;
   }
   if (first_visit) return kFirstVisitReward + bonus;
   if (!blocked) return kRevisitReward * visits_before;
@@ -101,6 +150,7 @@ Observation Episode::observation() const {
           .action_space = options_.action_space,
           .position = position_,
           .visits = visits_,
+          .ground_nodes = hidden() ? &hidden_->ground() : &visited_,
           .walk = walk_,
           .walk_hash = walk_hash_,
           .visited_count = visited_count_,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "graphdrl/env/discovery.h"
 #include "graphdrl/env/observation.h"
 
 namespace graphdrl {
@@ -25,6 +26,9 @@ struct EpisodeOptions {
   bool end_at_full_coverage = false;
   // … and punishes a blocked move by a further 0.1 per visit of the node before it.
   bool punish_blocked_by_visits = false;
+  Reveal reveal = {};  // what is not known beforehand is explored by neighbours
+  Score score = Score::kVisited;
+  std::uint64_t numbers_seed = 1;  // of the numbers by which an unknown world's nodes are known
 };
 
 inline constexpr double kFirstVisitReward = 0.1;   // eq. 3
@@ -42,17 +46,22 @@ struct StepResult {
   bool first_visit;  // the node entered was unvisited
 };
 
-// One walk. Not thread safe. step() is O(1) and allocates nothing but the growing walk.
+// One walk. Not thread safe. On a known map step() is O(1) and allocates nothing but the growing walk.
+//
+// On an unknown map [EpisodeOptions::reveal] view, task, observations and walk know nodes by the numbers of their
+// discovery; in_world() gives those of the world. What is owed to an end that is a node is the way back to the start,
+// until that node has been seen and what is left pays for the way there. Copies share what is known: reset() them.
 class Episode {
  public:
   // A walk of a task, begun at its start. Budget and end are the task's, not the options'. Throws Error on directions
-  // in a world that is no grid.
+  // in a world that is no grid, or not known; on a reveal that the world does not have.
   Episode(const World& world, const Task& task, const EpisodeOptions& options = {});
   // The same, not begun: the task is made with each start. Throws Error on a bad budget or end, too.
   Episode(const World& world, const EpisodeOptions& options);
 
-  // Begins a new walk. Throws Error as a task's start_at().
-  void reset(NodeId start);
+  // Begins a new walk. Throws Error as a task's start_at(). number: of the walk; an unknown world's nodes get other
+  // numbers in each.
+  void reset(NodeId start, std::uint64_t number = 0);
 
   // REQUIRES: !done(), 0 <= action < observation().action_count(), and the action can be paid for.
   StepResult step(int action);
@@ -83,20 +92,31 @@ class Episode {
   const std::vector<NodeId>& walk() const { return walk_; }
   int visited_count() const { return visited_count_; }
   double coverage() const { return static_cast<double>(visited_count_) / world_.valid_count(); }  // eq. 1
-  double prize() const { return prize_; }  // of the nodes visited
-  double spent() const { return spent_; }  // units of cost
+  double prize() const { return counts_seen() ? view().total_prize() : prize_; }  // of nodes visited, or seen
+  double spent() const { return spent_; }                                         // units of cost
+
+  bool hidden() const { return hidden_ != nullptr; }  // the map was not known beforehand
+  // A node's number in the world; kNoNode stays.
+  NodeId in_world(NodeId node) const { return hidden() && node != kNoNode ? hidden_->in_world(node) : node; }
+  std::vector<NodeId> walk_in_world() const;
 
  private:
+  bool counts_seen() const { return hidden() && options_.score == Score::kSeen; }
+  void begin_hidden(std::uint64_t number);
+  void settle_end();
   StepResult enter(NodeId next, double cost);
   double reward_of(bool blocked, std::uint32_t visits_before) const;
 
   World world_;
   EpisodeOptions options_;
-  Task task_;
+  Task asked_;  // in the world's numbers
+  Task task_;   // the same on what is known
+  std::shared_ptr<HiddenWorld> hidden_;  // null where the map is known
   const KnownGrid* grid_;  // of directions; else null
   std::int64_t most_free_moves_;
   NodeId position_ = kNoNode;
   std::vector<std::uint32_t> visits_;  // [N]
+  NodeSet visited_;                    // of a known map
   std::vector<NodeId> walk_;
   std::uint64_t walk_hash_ = 0;
   int visited_count_ = 0;

@@ -29,6 +29,7 @@ struct Observation {
   ActionSpace action_space;
   NodeId position;
   std::span<const std::uint32_t> visits;  // [N]; the start counts, a blocked move counts for the node stayed on
+  const NodeSet* ground_nodes;            // see ground()
   std::span<const NodeId> walk;           // every position so far, the start first; a blocked move repeats its node
   std::uint64_t walk_hash;                // of the walk: extended_walk_hash() of each position
   int visited_count;                      // valid nodes visited
@@ -37,12 +38,8 @@ struct Observation {
 
   const View& view() const { return task->view(); }
   bool visited(NodeId node) const { return visits[node] > 0; }
-  // The nodes visited.
-  NodeSet ground() const {
-    NodeSet visited(view().node_count());
-    for (const NodeId node : walk) visited.insert(node);
-    return visited;
-  }
+  // What first visits walk through: the nodes visited; where what is seen counts, all but the frontier.
+  const NodeSet& ground() const { return *ground_nodes; }
   bool all_visited() const { return visited_count == view().valid_count(); }
 
   int action_count() const {

@@ -134,6 +134,17 @@ Task Task::rest(NodeId position, double budget, NodeSet visited) const {
   return task;
 }
 
+Task Task::on(View known, NodeId start, NodeId end, std::shared_ptr<const std::vector<double>> costs_to_end) const {
+  Task task = *this;
+  task.view_ = std::move(known);
+  task.asked_end_ = end == kNoNode ? End::anywhere() : End::at(end);
+  task.start_ = start;
+  task.end_ = end;
+  task.to_end_ = std::move(costs_to_end);
+  task.reach_.forget();
+  return task;
+}
+
 Task Task::without(const NodeSet& claimed) const {
   Task task = *this;
   if (task.claimed_.empty()) task.claimed_ = NodeSet(view_.node_count());

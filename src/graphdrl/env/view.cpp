@@ -1,6 +1,5 @@
 #include "graphdrl/env/view.h"
 
-#include <atomic>
 #include <cmath>
 
 #include "graphdrl/base/error.h"
@@ -28,9 +27,7 @@ const Graph& KnownGrid::graph() const {
 }
 
 std::shared_ptr<const Known> make_known(Known&& known) {
-  static std::atomic<std::uint64_t> worlds = 0;
   const auto made = std::make_shared<Known>(std::move(known));
-  if (made->world == 0) made->world = ++worlds;
   for (NodeId node = 0; node < made->open.node_count(); ++node) {
     if (made->blocked[node]) continue;
     made->valid_nodes.push_back(node);

@@ -33,18 +33,25 @@ class KnownGrid {
   mutable Graph graph_;
 };
 
-// Immutable once it is made [make_known()]: any number of threads may read it. What becomes known later is another one,
-// of a higher version, in which every node keeps its number: nodes are numbered in the order of their discovery, so
-// that vectors by node only grow.
+// Of a known map it is immutable once it is made [make_known()]: any number of threads may read it. Of an unknown one it
+// grows [Discovery], between the moves of the one walk that explores it: nodes are numbered in the order of their
+// discovery and keep their numbers, so that vectors by node only grow.
 struct Known {
   std::string name;                 // for messages
-  std::uint64_t version = 0;        // 0 for ever of a known map
-  std::uint64_t world = 0;          // the same for all versions of one world; 0 lets make_known() number a new one
+  std::uint64_t version = 0;        // 0 for ever of a known map; else one more each time that something becomes known
   Graph open;                       // what can be walked: without the edges of obstacles
   std::vector<bool> blocked;        // [N], known obstacles
   std::vector<double> prizes = {};  // [N], of first visits; empty where each is 1
-  std::vector<bool> frontier = {};  // [N], seen and not visited, so that edges may be missing; empty of a known map
   std::shared_ptr<const KnownGrid> grid = {};  // null where there are no cells
+
+  // Of an unknown map; empty of a known one:
+  std::vector<bool> frontier = {};          // [N], nodes whose edges may not all be known
+  std::vector<std::uint32_t> seen_at = {};  // [N], the version in which the node was last seen: its visits, counted
+  // Frontier nodes in the order in which they were last seen. Some may stand there earlier, too, and some are no
+  // frontier any more, but the last is.
+  std::vector<NodeId> recent = {};
+  // Whether the order of neighbours is shown, as directions are by cells; else it means nothing.
+  bool ordered = true;
 
   // What follows from these, filled in by make_known():
   std::optional<Graph> into = {};        // of directed graphs: edges turned round
@@ -65,13 +72,19 @@ class View {
 
   const std::string& name() const { return known_->name; }
   std::uint64_t version() const { return known_->version; }
-  std::uint64_t world() const { return known_->world; }  // a number that all versions of a world share
   NodeId node_count() const { return known_->open.node_count(); }
   std::span<const NodeId> valid_nodes() const { return known_->valid_nodes; }  // ascending
   int valid_count() const { return static_cast<int>(known_->valid_nodes.size()); }
   bool is_blocked(NodeId node) const { return known_->blocked[node]; }
-  // Seen, but not visited yet: edges that lead on from there may be unknown. Never in a known map.
-  bool is_frontier(NodeId node) const { return !known_->frontier.empty() && known_->frontier[node]; }
+  // Whether the map was not known beforehand, and what is known of it grows.
+  bool grows() const { return version() > 0; }
+  // Whether edges that lead on from a node may be unknown. Never in a known map.
+  bool is_frontier(NodeId node) const { return grows() && known_->frontier[node]; }
+  // When a node was last seen; later is more. REQUIRES: grows().
+  std::uint32_t seen_at(NodeId node) const { return known_->seen_at[node]; }
+  // As Known's.
+  bool ordered() const { return known_->ordered; }
+  std::span<const NodeId> recent() const { return known_->recent; }
 
   bool has_prizes() const { return !known_->prizes.empty(); }
   double prize(NodeId node) const { return known_->prizes.empty() ? 1.0 : known_->prizes[node]; }
@@ -91,9 +104,7 @@ class View {
   bool is_grid() const { return known_->grid && !known_->grid->map().diagonals; }
   const KnownGrid& grid() const { return *known_->grid; }  // REQUIRES: the world has cells
 
-  // Whether this is the other one's world as it is known later.
-  bool is_later_than(const View& other) const { return world() == other.world() && version() > other.version(); }
-  // Whether both are of one world as it was known at one time.
+  // Whether both are of one world, of an unknown one in one exploration.
   friend bool operator==(const View& one, const View& other) { return one.known_ == other.known_; }
 
  protected:

@@ -47,8 +47,10 @@ std::vector<Contender> make_contenders(const ComparisonOptions& options) {
       contenders.push_back({name, false, [make = own->second](std::uint64_t) { return make(); }});
     } else {
       const auto spec = std::make_shared<const PolicySpec>(parse_policy(name));
-      contenders.push_back(
-          {spec->label, plans(*spec), [spec](std::uint64_t seed) { return make_policy(*spec, seed); }});
+      const bool known = options.reveal.all();
+      contenders.push_back({spec->label, known && plans(*spec), [spec, known](std::uint64_t seed) {
+                              return known ? make_policy(*spec, seed) : make_online_policy(*spec, seed);
+                            }});
     }
   }
   std::map<std::string, std::set<std::string>> names;
@@ -65,7 +67,25 @@ struct Arena {
   Task task;                      // of any of the starts
   std::vector<NodeId> starts;     // one per episode
   std::optional<double> optimum;  // percent
+  std::vector<double> known = {};  // percents of walks that know the map, by episode; empty unless asked for
 };
+
+// Of what counts: prizes of nodes visited, or of nodes seen.
+std::vector<double> known_percents(const Arena& arena, const ComparisonOptions& options, const Clock& clock) {
+  std::map<NodeId, double> by_start;
+  Task task = arena.task;
+  std::vector<double> percents;
+  for (const NodeId start : arena.starts) {
+    const auto [known, fresh] = by_start.try_emplace(start);
+    if (fresh) {
+      task.start_at(start);
+      const auto planner = make_planner("search", options.seed);
+      known->second = arena.world.percent_of_all(planner->plan(task, clock.at_most(*options.price_s)).prize);
+    }
+    percents.push_back(known->second);
+  }
+  return percents;
+}
 
 std::optional<double> mean_optimum(const Arena& arena) {
   const int nodes = arena.world.valid_count();
@@ -99,7 +119,7 @@ std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& opt
   return starts;
 }
 
-std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
+std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
     Asked asked{.budget = options.budget};
@@ -113,7 +133,10 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
     }
     arenas.push_back({.world = world, .task = task, .starts = starts, .optimum = {}});
   }
-  parallel_for(static_cast<int>(arenas.size()), [&](int i) { arenas[i].optimum = mean_optimum(arenas[i]); });
+  parallel_for(static_cast<int>(arenas.size()), [&](int i) {
+    arenas[i].optimum = mean_optimum(arenas[i]);
+    if (options.price_s) arenas[i].known = known_percents(arenas[i], options, clock);
+  });
   return arenas;
 }
 
@@ -152,8 +175,8 @@ std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const std::vect
 // Percents, by policy, map and episode; an empty one where a policy's search is out of reach.
 using Coverages = std::vector<std::vector<std::vector<double>>>;
 
-Coverages measure(const std::vector<Arena>& arenas, const std::vector<Contender>& contenders, std::uint64_t seed,
-                  const Clock& clock) {
+Coverages measure(const std::vector<Arena>& arenas, const std::vector<Contender>& contenders,
+                  const ComparisonOptions& options, const Clock& clock) {
   Coverages coverages(contenders.size(), std::vector<std::vector<double>>(arenas.size()));
   for (auto& of_policy : coverages) {
     for (std::size_t map = 0; map < arenas.size(); ++map) of_policy[map].resize(arenas[map].starts.size());
@@ -163,14 +186,18 @@ Coverages measure(const std::vector<Arena>& arenas, const std::vector<Contender>
   parallel_for(static_cast<int>(blocks.size()), [&](int b) {
     const Block& block = blocks[b];
     const Arena& arena = arenas[block.map];
-    const std::uint64_t map_seed = derive_seed(seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
+    const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
     const std::uint64_t block_seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0]));
     const auto policy = contenders[block.policy].make(block_seed);
     std::vector<NodeId> starts;
     for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
     try {
-      const auto results = roll_out(Episode(arena.world, arena.task, {.action_space = action_space_of(arena.world)}),
-                                    starts, *policy, clock);
+      const EpisodeOptions walks{
+          .action_space = options.reveal.all() ? action_space_of(arena.world) : ActionSpace::kNeighbours,
+          .reveal = options.reveal,
+          .score = options.score,
+          .numbers_seed = map_seed};
+      const auto results = roll_out(Episode(arena.world, arena.task, walks), starts, *policy, clock, block.episodes);
       for (std::size_t i = 0; i < results.size(); ++i) {
         coverages[block.policy][block.map][block.episodes[i]] = arena.world.percent_of_all(results[i].prize);
       }
@@ -201,6 +228,36 @@ ComparisonOverall summarise_rows(const std::string& policy, std::span<const Comp
   return overall;
 }
 
+// REQUIRES: rows are one policy's, as many as families.
+std::vector<FamilyRow> summarise_families(std::span<const ComparisonRow> rows,
+                                          const std::vector<std::string>& families) {
+  std::vector<std::string> names;
+  for (const std::string& family : families) {
+    if (std::ranges::find(names, family) == names.end()) names.push_back(family);
+  }
+  std::vector<FamilyRow> summaries;
+  for (const std::string& name : names) {
+    std::vector<const ComparisonRow*> maps;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (families[i] == name && rows[i].coverage) maps.push_back(&rows[i]);
+    }
+    const auto over = [&](std::optional<Summary> ComparisonRow::* what) -> std::optional<Summary> {
+      if (maps.empty() || !(maps.front()->*what)) return std::nullopt;
+      if (maps.size() == 1) return maps.front()->*what;
+      std::vector<double> means;
+      for (const ComparisonRow* const row : maps) means.push_back((row->*what)->mean);
+      return summarise(means);
+    };
+    summaries.push_back({.family = name,
+                         .policy = rows.front().policy,
+                         .maps = static_cast<int>(maps.size()),
+                         .coverage = over(&ComparisonRow::coverage),
+                         .known = over(&ComparisonRow::known),
+                         .price = over(&ComparisonRow::price)});
+  }
+  return summaries;
+}
+
 }  // namespace
 
 std::optional<PaperResult> paper_result(const std::string& map, double budget) {
@@ -217,10 +274,13 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
   if (options.episodes < 1) {
     throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
   }
-  const std::vector<Arena> arenas = make_arenas(worlds, options);
+  if (options.price_s && options.score == Score::kSeen) {
+    throw Error({.what = "the price of ignorance is that of nodes visited", .got = "the score seen"});
+  }
+  const std::vector<Arena> arenas = make_arenas(worlds, options, clock);
   const std::vector<Contender> contenders = make_contenders(options);
-  const Coverages coverages = measure(arenas, contenders, options.seed, clock);
-  Comparison comparison{.options = options, .rows = {}, .overall = {}};
+  const Coverages coverages = measure(arenas, contenders, options, clock);
+  Comparison comparison{.options = options, .rows = {}, .overall = {}, .families = {}};
   for (std::size_t policy = 0; policy < contenders.size(); ++policy) {
     const std::string& label = contenders[policy].label;
     for (std::size_t map = 0; map < arenas.size(); ++map) {
@@ -236,9 +296,20 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
            .episodes = static_cast<int>(arena.starts.size()),
            .coverage = values.empty() ? std::nullopt : std::optional(summarise(values)),
            .optimum = arena.optimum,
-           .paper = arena.task.ends_anywhere() ? paper_result(arena.world.name(), arena.task.budget()) : std::nullopt});
+           .paper = arena.task.ends_anywhere() ? paper_result(arena.world.name(), arena.task.budget()) : std::nullopt,
+           .known = {},
+           .price = {}});
+      if (arena.known.empty() || values.empty()) continue;
+      std::vector<double> prices;
+      for (std::size_t i = 0; i < values.size(); ++i) prices.push_back(values[i] > 0 ? arena.known[i] / values[i] : 1);
+      comparison.rows.back().known = summarise(arena.known);
+      comparison.rows.back().price = summarise(prices);
     }
-    comparison.overall.push_back(summarise_rows(label, std::span(comparison.rows).last(arenas.size())));
+    const auto rows = std::span(std::as_const(comparison.rows)).last(arenas.size());
+    comparison.overall.push_back(summarise_rows(label, rows));
+    if (options.families.empty()) continue;
+    const std::vector<FamilyRow> families = summarise_families(rows, options.families);
+    comparison.families.insert(comparison.families.end(), families.begin(), families.end());
   }
   return comparison;
 }

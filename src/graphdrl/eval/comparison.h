@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/env/discovery.h"
 #include "graphdrl/env/policy.h"
 #include "graphdrl/env/task.h"
 #include "graphdrl/env/world.h"
@@ -34,6 +35,11 @@ struct ComparisonOptions {
   int episodes = 30;                  // per map, from its own start, else random ones, the same for every policy
   bool all_starts = false;            // instead: every valid node once
   std::uint64_t seed = 1;
+  Reveal reveal = {};  // of unknown maps; these are walked by neighbours
+  Score score = Score::kVisited;
+  // Of unknown maps: seconds that `search` may take for a walk that knows the map, from each start of each.
+  std::optional<double> price_s = {};
+  std::vector<std::string> families = {};  // [worlds] or empty: the family of each, to be summarised by
   // Policies of the caller's own, by names of `policies` that are theirs. Several may be at work at once.
   std::map<std::string, std::function<std::unique_ptr<Policy>()>> own_policies = {};
 };
@@ -52,6 +58,20 @@ struct ComparisonRow {
   std::optional<Summary> coverage;   // empty where the policy's search is out of reach
   std::optional<double> optimum;     // mean over the same starts; empty where out of reach
   std::optional<PaperResult> paper;  // of walks that may end anywhere, as the paper's do
+  std::optional<Summary> known;      // of walks that know the map, over the same starts; only with price_s
+  // The price of ignorance: what walks that know the map get, as a multiple of what the policy gets; the mean over
+  // starts.
+  std::optional<Summary> price;
+};
+
+// A policy on the maps of a family: of its maps' means, or of the episodes of its only map.
+struct FamilyRow {
+  std::string family;
+  std::string policy;
+  int maps;  // with a coverage
+  std::optional<Summary> coverage;
+  std::optional<Summary> known;  // as ComparisonRow's
+  std::optional<Summary> price;
 };
 
 struct ComparisonOverall {
@@ -66,6 +86,7 @@ struct Comparison {
   ComparisonOptions options;
   std::vector<ComparisonRow> rows;  // by policy, then by map, both in the order given
   std::vector<ComparisonOverall> overall;
+  std::vector<FamilyRow> families;  // by policy, then by family, in the order of the maps
 };
 
 // Grids are walked in directions, other worlds by neighbours. Once the clock passes, episodes end where they are.

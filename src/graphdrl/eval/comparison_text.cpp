@@ -33,6 +33,33 @@ std::string format_rows(std::span<const ComparisonRow> rows, std::size_t name_wi
   return text + '\n';
 }
 
+// "88.4 ± 0.5"
+std::string with_error(const std::optional<Summary>& summary, const char* format) {
+  if (!summary) return "–";
+  const std::string mean = or_dash(summary->mean, format);
+  return summary->ci95 ? fmt::format("{} ± {}", mean, or_dash(summary->ci95->high - summary->mean, format)) : mean;
+}
+
+// A table per family, a line per policy.
+std::string format_families(const Comparison& comparison, std::size_t name_width) {
+  std::string text;
+  const std::size_t policies = comparison.overall.size();
+  const std::size_t count = comparison.families.size() / policies;
+  for (std::size_t family = 0; family < count; ++family) {
+    const FamilyRow& first = comparison.families[family];
+    text += fmt::format("{:{}}  {:>5} {:>12}  {:>12}  {:>18}\n", first.family, name_width, "maps", "mean", "known",
+                        "price of ignorance");
+    for (std::size_t policy = 0; policy < policies; ++policy) {
+      const FamilyRow& row = comparison.families[policy * count + family];
+      text += fmt::format("{:{}}  {:5} {:>12}  {:>12}  {:>18}\n", row.policy, name_width, row.maps,
+                          with_error(row.coverage, "{:.1f}"), with_error(row.known, "{:.1f}"),
+                          with_error(row.price, "{:.3f}"));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 struct Wording {
   std::string none;
   std::string some;
@@ -90,14 +117,19 @@ std::string ends_of(const Comparison& comparison) {
 }  // namespace
 
 std::string format_comparison(const Comparison& comparison) {
-  std::string text = fmt::format("{}, budget {}, {}{}\n\n", what_is_measured(comparison.rows), budgets_of(comparison),
-                                 starts_of(comparison), ends_of(comparison));
+  const ComparisonOptions& options = comparison.options;
+  std::string text = fmt::format("{}{}, budget {}, {}{}\n\n", what_is_measured(comparison.rows),
+                                 options.reveal.all() ? "" : fmt::format(", nodes {}, of unknown maps that reveal {}",
+                                 options.score == Score::kSeen ? "seen" : "visited", options.reveal.text()),
+                                 budgets_of(comparison), starts_of(comparison), ends_of(comparison));
   std::size_t name_width = 11;
   for (const ComparisonRow& row : comparison.rows) {
     name_width = std::max({name_width, row.map.size(), row.policy.size()});
   }
   const std::size_t maps = comparison.rows.size() / std::max<std::size_t>(comparison.overall.size(), 1);
-  for (std::size_t i = 0; i < comparison.overall.size(); ++i) {
+  for (const FamilyRow& row : comparison.families) name_width = std::max(name_width, row.family.size());
+  text += format_families(comparison, name_width);
+  for (std::size_t i = 0; i < comparison.overall.size() && comparison.families.empty(); ++i) {
     text += format_rows(std::span(comparison.rows).subspan(i * maps, maps), name_width);
   }
   text += fmt::format("{:{}}  {:>5} {:>6}  {}\n", "overall", name_width, "maps", "mean", "share of the optimum");

@@ -24,11 +24,11 @@ int block_size(const World& world) {
 }
 
 std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy,
-                                    const Clock& clock) {
+                                    const Clock& clock, std::span<const int> places) {
   std::vector<Episode> episodes(starts.size(), episode);
   std::vector<int> running;
   for (int i = 0; i < std::ssize(starts); ++i) {
-    episodes[i].reset(starts[i]);
+    episodes[i].reset(starts[i], static_cast<std::uint64_t>(places.empty() ? i : places[i]));
     if (!episodes[i].done()) running.push_back(i);
   }
   std::vector<Observation> observations;
@@ -49,28 +49,51 @@ std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const Node
   }
   std::vector<RolloutResult> results;
   results.reserve(episodes.size());
-  for (const Episode& ended : episodes) results.push_back({ended.walk(), ended.prize()});
+  for (const Episode& ended : episodes) results.push_back({ended.walk_in_world(), ended.prize()});
   return results;
 }
 
-Plan plan_by_steps(const World& world, const Task& task, Policy& policy, const Clock& clock) {
+Plan plan_by_steps(const World& world, const Task& task, const EpisodeOptions& options, Policy& policy,
+                   const Clock& clock, double think_s, Discovered* discovered) {
   Ticker ticker(clock, /*every=*/1);  // a step may take as long as the policy likes
-  Episode episode(world, task, {.action_space = action_space_of(world)});
-  std::size_t last_visit = 1;  // length of the walk up to it
+  Episode episode(world, task, options);
+  std::vector<int> known = {episode.view().valid_count()};
+  const auto step_on = [&](int action) {
+    step(episode, action);
+    known.push_back(episode.view().valid_count());
+  };
+  std::size_t last_gain = 1;  // length of the walk up to it
+  double prize = episode.prize();
   while (!episode.done() && !ticker.tick(episode.visited_count())) {
     const Observation now = episode.observation();
-    const int visited = episode.visited_count();
     int action = kStop;
-    policy.act({&now, 1}, {&action, 1}, clock);
+    policy.act({&now, 1}, {&action, 1}, think_s < kNoLimit ? clock.at_most(think_s) : clock);
     if (action == kStop) break;
-    step(episode, action);
-    if (episode.visited_count() > visited) last_visit = episode.walk().size();
+    const int visited = episode.visited_count();
+    step_on(action);
+    if (episode.visited_count() == visited && episode.prize() <= prize) continue;
+    last_gain = episode.walk().size();
+    prize = episode.prize();
   }
-  std::vector<NodeId> walk = episode.walk();
-  if (task.ends_anywhere()) walk.resize(last_visit);
-  NearestFirst search;
-  append_way_to_end(task, walk, search);
-  return plan_of_walk(task, std::move(walk));
+  const NodeId end = episode.task().end();
+  if (end != kNoNode && end != episode.position()) {
+    std::vector<NodeId> way = {episode.position()};
+    NearestFirst search;
+    append_way_to_end(episode.task(), way, search);
+    for (std::size_t i = 1; i < way.size(); ++i) step_on(episode.observation().action_to(way[i]));
+  }
+  std::vector<NodeId> walk = episode.walk_in_world();
+  if (task.ends_anywhere()) walk.resize(last_gain);
+  if (discovered != nullptr) {
+    known.resize(walk.size());
+    discovered->after_step = std::move(known);
+    for (NodeId node = 0; node < discovered->after_step.back(); ++node) {
+      discovered->nodes.push_back(episode.in_world(node));
+    }
+  }
+  Plan plan = plan_of_walk(task, std::move(walk));
+  if (options.score == Score::kSeen) plan.prize = episode.prize();
+  return plan;
 }
 
 }  // namespace graphdrl

@@ -44,21 +44,22 @@ struct Arc {
 
 }  // namespace
 
-// What is known of some costs. Sums run in the order of the edges.
-struct Graph::CostSum {
-  static CostSum of(double cost) { return {cost, cost, cost, cost == std::floor(cost)}; }
-  void add(const CostSum& more) {
-    sum += more.sum;
-    least = std::min(least, more.least);
-    most = std::max(most, more.most);
-    integers = integers && more.integers;
-  }
+Graph::CostSum Graph::CostSum::of(double cost) {
+  return {cost, cost, cost, cost == std::floor(cost)};
+}
 
-  double sum = 0;
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0;
-  bool integers = true;
-};
+void Graph::CostSum::add(const CostSum& more) {
+  sum += more.sum;
+  least = std::min(least, more.least);
+  most = std::max(most, more.most);
+  integers = integers && more.integers;
+}
+
+void Graph::close_node() {
+  const auto size = static_cast<std::int32_t>(std::ssize(neighbours_) - arc_count_);
+  lists_.push_back({.begin = arc_count_, .size = size, .room = size});
+  arc_count_ += size;
+}
 
 Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind kind) {
   check_edges(node_count, edges);
@@ -80,7 +81,7 @@ Graph Graph::from_edges(NodeId node_count, std::span<const Edge> edges, EdgeKind
   const bool unit_costs = std::all_of(edges.begin(), edges.end(), [](const Edge& edge) { return edge.cost == 1; });
   Graph graph;
   graph.kind_ = kind;
-  graph.offsets_.reserve(static_cast<std::size_t>(node_count) + 1);
+  graph.lists_.reserve(node_count);
   graph.neighbours_.reserve(arcs.size());
   if (!unit_costs) graph.costs_.reserve(arcs.size());
   std::int64_t begin = 0;
@@ -109,7 +110,7 @@ Graph Graph::grid(int rows, int cols) {
 
 Graph Graph::grid(const GridMap& map) {
   Graph graph;
-  graph.offsets_.reserve(map.blocked.size() + 1);
+  graph.lists_.reserve(map.blocked.size());
   for (NodeId node = 0; node < map.rows * map.cols; ++node) {
     const Cell at = map.cell(node);
     for (const Cell& step : map.steps()) {
@@ -130,13 +131,12 @@ Graph Graph::grid(const GridMap& map) {
 Graph Graph::complete(NodeId node_count, std::shared_ptr<const PairCosts> costs,
                       const std::function<void(double share)>& progress) {
   Graph graph;
-  graph.offsets_.resize(static_cast<std::size_t>(node_count) + 1);
-  std::iota(graph.offsets_.begin(), graph.offsets_.end(), std::int64_t{1});
+  for (NodeId node = 0; node < node_count; ++node) graph.lists_.push_back({node + 1, node_count - 1, node_count - 1});
   // All nodes twice, so that those after a node, and then those before it, stand together.
   for (int copy = 0; copy < 2; ++copy) {
     for (NodeId node = 0; node < node_count; ++node) graph.neighbours_.push_back(node);
   }
-  graph.overlap_ = node_count - 2;
+  graph.arc_count_ = std::int64_t{node_count} * (node_count - 1);
   graph.pair_costs_ = std::move(costs);
   if (node_count < 2) return graph;
   std::vector<CostSum> rows(node_count);  // from each node to those after it
@@ -156,7 +156,7 @@ Graph Graph::complete(NodeId node_count, std::shared_ptr<const PairCosts> costs,
   CostSum all;
   for (const CostSum& row : rows) all.add(row);
   all.sum *= 2;  // both ways
-  graph.settle_costs(all, 2 * graph.edge_count());
+  graph.settle_costs(all);
   return graph;
 }
 
@@ -180,14 +180,15 @@ Graph Graph::without(const std::vector<bool>& dropped) const {
   }
   Graph graph;
   graph.kind_ = kind_;
-  graph.offsets_.reserve(offsets_.size());
+  graph.lists_.reserve(lists_.size());
   graph.neighbours_.reserve(neighbours_.size());
   graph.costs_.reserve(costs_.size());
   for (NodeId node = 0; node < node_count(); ++node) {
-    for (std::int64_t i = offsets_[node]; i < offsets_[node + 1]; ++i) {
-      if (dropped[node] || dropped[neighbours_[i]]) continue;
-      graph.neighbours_.push_back(neighbours_[i]);
-      if (weighted()) graph.costs_.push_back(costs_[i]);
+    for (int i = 0; i < degree(node); ++i) {
+      const NodeId next = neighbours(node)[i];
+      if (dropped[node] || dropped[next]) continue;
+      graph.neighbours_.push_back(next);
+      if (weighted()) graph.costs_.push_back(cost(node, i));
     }
     graph.close_node();
   }
@@ -197,9 +198,65 @@ Graph Graph::without(const std::vector<bool>& dropped) const {
 
 Graph Graph::from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> neighbours) {
   Graph graph;
-  graph.offsets_ = std::move(offsets);
   graph.neighbours_ = std::move(neighbours);
+  graph.arc_count_ = std::ssize(graph.neighbours_);
+  graph.lists_.reserve(offsets.size() - 1);
+  for (std::size_t node = 0; node + 1 < offsets.size(); ++node) {
+    const auto size = static_cast<std::int32_t>(offsets[node + 1] - offsets[node]);
+    graph.lists_.push_back({.begin = offsets[node], .size = size, .room = size});
+  }
   return graph;
+}
+
+NodeId Graph::add_node() {
+  lists_.push_back({.begin = std::ssize(neighbours_), .size = 0, .room = 0});
+  return node_count() - 1;
+}
+
+void Graph::add_edge(const Edge& edge, const Places& places) {
+  if (costs_.empty() && edge.cost != 1) {
+    costs_.assign(std::max<std::size_t>(neighbours_.size(), 1), 1);  // not empty: from now on edges have costs
+    cost_sum_ = static_cast<double>(arc_count_);
+  }
+  insert_arc(edge.a, edge.b, edge.cost, places.of_b);
+  if (!directed()) insert_arc(edge.b, edge.a, edge.cost, places.of_a);
+  if (costs_.empty()) return;
+  const int arcs = directed() ? 1 : 2;
+  CostSum all = CostSum::of(edge.cost);
+  all.sum = cost_sum_ + arcs * edge.cost;
+  if (arc_count_ > arcs) {
+    all.least = std::min(all.least, min_cost_);
+    all.most = std::max(all.most, max_cost_);
+    all.integers = all.integers && integer_costs_;
+  }
+  settle_costs(all);
+}
+
+void Graph::insert_arc(NodeId from, NodeId to, double cost, int place) {
+  List& list = lists_[from];
+  if (list.size == list.room) {
+    // To the end of all lists, with room for as many again.
+    const std::int64_t begin = std::ssize(neighbours_);
+    list.room = std::max(4, 2 * list.size);
+    neighbours_.resize(begin + list.room);
+    std::copy_n(neighbours_.begin() + list.begin, list.size, neighbours_.begin() + begin);
+    if (!costs_.empty()) {
+      costs_.resize(neighbours_.size());
+      std::copy_n(costs_.begin() + list.begin, list.size, costs_.begin() + begin);
+    }
+    list.begin = begin;
+  }
+  const auto first = neighbours_.begin() + list.begin;
+  if (place < 0) place = static_cast<int>(std::upper_bound(first, first + list.size, to) - first);
+  std::copy_backward(first + place, first + list.size, first + list.size + 1);
+  first[place] = to;
+  if (!costs_.empty()) {
+    const auto first_cost = costs_.begin() + list.begin;
+    std::copy_backward(first_cost + place, first_cost + list.size, first_cost + list.size + 1);
+    first_cost[place] = cost + 0.0;  // turns -0 into 0
+  }
+  ++list.size;
+  ++arc_count_;
 }
 
 Graph Graph::reversed() const {
@@ -228,13 +285,14 @@ void Graph::settle_costs() {
   }
   CostSum all;
   for (const double cost : costs_) all.add(CostSum::of(cost));
-  settle_costs(all, std::ssize(costs_));
+  settle_costs(all);
 }
 
-void Graph::settle_costs(const CostSum& all, std::int64_t count) {
+void Graph::settle_costs(const CostSum& all) {
+  cost_sum_ = all.sum;
   min_cost_ = all.least;
   max_cost_ = all.most;
-  mean_cost_ = all.sum > 0 ? all.sum / static_cast<double>(count) : 1;
+  mean_cost_ = all.sum > 0 ? all.sum / static_cast<double>(arc_count_) : 1;
   integer_costs_ = all.integers && all.sum < kExactIntegers;
 }
 

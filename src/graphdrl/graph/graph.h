@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -35,11 +36,13 @@ class PairCosts {
   virtual bool metric() const { return false; }
 };
 
-// A graph without loops or parallel edges; nodes are 0 … node_count() - 1. Immutable, so any number of threads may read
-// it. The order of a node's neighbours is part of the graph: searches and ties follow it.
+// A graph without loops or parallel edges; nodes are 0 … node_count() - 1. Any number of threads may read one that does
+// not grow. The order of a node's neighbours is part of the graph: searches and ties follow it.
 class Graph {
  public:
   Graph() = default;
+  // Without nodes, to grow.
+  explicit Graph(EdgeKind kind) : kind_(kind) {}
 
   // Neighbours in ascending order. Leaves out loops, since a walk never gains by them. Of parallel edges the cheapest
   // stays. Throws Error on an edge out of range and on a cost that is negative or not finite. Cost: linear but for
@@ -68,33 +71,42 @@ class Graph {
   // edge stands once in the list of each of its two nodes.
   static Graph from_lists(std::vector<std::int64_t> offsets, std::vector<NodeId> neighbours);
 
+  // Grows by a node without edges; gives its id.
+  NodeId add_node();
+  // Grows by an edge that is not there yet. It stands before the first neighbour with a greater id, or at the given
+  // place of a node's list: lists of more than eight must stay in ascending order. Cost: O(degrees), amortised.
+  // REQUIRES: the graph is not complete; both nodes are there and differ; the cost is finite and not negative.
+  struct Places {
+    int of_b = -1;  // in the list of a
+    int of_a = -1;  // in the list of b, if the graph is undirected
+  };
+  void add_edge(const Edge& edge, const Places& places);
+  void add_edge(const Edge& edge) { add_edge(edge, Places()); }
+
   // The same graph with every edge turned round. An undirected graph stays as it is.
   Graph reversed() const;
 
-  NodeId node_count() const { return static_cast<NodeId>(offsets_.size()) - 1; }
-  std::int64_t edge_count() const {
-    if (is_complete()) return std::int64_t{node_count()} * (node_count() - 1) / 2;
-    return std::ssize(neighbours_) / (directed() ? 1 : 2);
-  }
+  NodeId node_count() const { return static_cast<NodeId>(lists_.size()); }
+  std::int64_t edge_count() const { return directed() ? arc_count_ : arc_count_ / 2; }
   bool directed() const { return kind_ == EdgeKind::kDirected; }
   bool weighted() const { return !costs_.empty() || is_complete(); }  // some edge costs other than 1
 
   // Where edges lead from a node, and how many there are.
   std::span<const NodeId> neighbours(NodeId node) const {
-    return {neighbours_.data() + offsets_[node], neighbours_.data() + offsets_[node + 1] + overlap_};
+    return {neighbours_.data() + lists_[node].begin, static_cast<std::size_t>(lists_[node].size)};
   }
-  int degree(NodeId node) const { return static_cast<int>(offsets_[node + 1] + overlap_ - offsets_[node]); }
+  int degree(NodeId node) const { return lists_[node].size; }
 
   // The cost of going to neighbours(node)[i].
   double cost(NodeId node, int index) const {
-    if (is_complete()) return pair_costs_->cost(node, neighbours_[offsets_[node] + index]);
-    return costs_.empty() ? 1.0 : costs_[offsets_[node] + index];
+    if (is_complete()) return pair_costs_->cost(node, neighbours_[lists_[node].begin + index]);
+    return costs_.empty() ? 1.0 : costs_[lists_[node].begin + index];
   }
 
   // The index of `next` in neighbours(node), or -1. Cost: O(log degree), or O(8) on a grid.
   int index_of(NodeId node, NodeId next) const;
 
-  // Of the costs of all edges; computed when the graph is made. 1 without edges; the mean is 1 if all edges cost 0.
+  // Of the costs of all edges, computed beforehand. 1 without edges; the mean is 1 if all edges cost 0.
   double min_cost() const { return min_cost_; }
   double max_cost() const { return max_cost_; }
   double mean_cost() const { return mean_cost_; }
@@ -107,20 +119,37 @@ class Graph {
   std::vector<Edge> edges() const;
 
  private:
-  struct CostSum;
+  // Where a node's neighbours stand.
+  struct List {
+    std::int64_t begin;
+    std::int32_t size;
+    std::int32_t room;  // for so many, before the list must move
+  };
+  // What is known of some costs. Sums run in the order in which they are added.
+  struct CostSum {
+    static CostSum of(double cost);
+    void add(const CostSum& more);
+
+    double sum = 0;
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0;
+    bool integers = true;
+  };
 
   // Goes on with the next node, after the neighbours of this one, and their costs if edges have costs, were added.
-  void close_node() { offsets_.push_back(std::ssize(neighbours_)); }
+  void close_node();
+  void insert_arc(NodeId from, NodeId to, double cost, int place);
   // Forgets costs that are all 1, else computes what is known of them.
   void settle_costs();
-  void settle_costs(const CostSum& all, std::int64_t count);
+  void settle_costs(const CostSum& all);
 
   EdgeKind kind_ = EdgeKind::kUndirected;
-  std::vector<std::int64_t> offsets_ = {0};      // [N + 1]
-  std::vector<NodeId> neighbours_;               // [2E], or [E] of a directed graph; [2N] of a complete one
-  std::int64_t overlap_ = 0;                     // how far each list reaches into the next: N - 2 in a complete graph
+  std::vector<List> lists_;                      // [N]; of a complete graph each reaches far into the next
+  std::vector<NodeId> neighbours_;               // [2E], or [E] of a directed graph; [2N] of a complete one; more if it grew
+  std::int64_t arc_count_ = 0;                   // edges, undirected ones twice
   std::shared_ptr<const PairCosts> pair_costs_;  // of a complete graph
   std::vector<double> costs_;                    // as neighbours_; empty where every edge costs 1
+  double cost_sum_ = 0;                          // of arcs, where edges have costs
   double min_cost_ = 1;
   double max_cost_ = 1;
   double mean_cost_ = 1;

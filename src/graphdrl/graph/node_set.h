@@ -1,6 +1,7 @@
 // Sets of nodes as bits: what a walk has visited.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <vector>
@@ -13,7 +14,11 @@ namespace graphdrl {
 class NodeSet {
  public:
   NodeSet() = default;
-  explicit NodeSet(NodeId node_count) : words_((static_cast<std::size_t>(node_count) + 63) / 64) {}
+  explicit NodeSet(NodeId node_count) { grow(node_count); }
+
+  // The same set among more nodes.
+  void grow(NodeId node_count) { words_.resize((static_cast<std::size_t>(node_count) + 63) / 64); }
+  void clear() { std::fill(words_.begin(), words_.end(), 0); }
 
   bool contains(NodeId node) const { return (words_[node / 64] >> (node % 64) & 1) != 0; }
   void insert(NodeId node) { words_[node / 64] |= std::uint64_t{1} << (node % 64); }

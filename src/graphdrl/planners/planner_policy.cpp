@@ -38,13 +38,12 @@ std::span<const NodeId> PlannerPolicy::Followed::rest(const Observation& observa
 
 const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& observation, const Clock& clock) {
   const Task& whole = *observation.task;
-  const bool at_start = observation.walk.size() == 1;
-  const Task task = at_start ? whole
+  const bool whole_walk = observation.walk.size() == 1 && !whole.view().grows();
+  const Task task = whole_walk ? whole
                              : whole.rest(observation.position, std::max(0.0, whole.budget() - observation.spent),
                                           observation.ground());
   const auto older = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
-    const View& then = plan.task.view();
-    return (whole.view() == then || whole.view().is_later_than(then)) && plan.leads_on(observation);
+    return plan.task.view() == whole.view() && plan.leads_on(observation);
   });
   Plan plan;
   if (older != plans_.end() && holds(task, older->rest(observation))) {
@@ -54,6 +53,7 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
     plan = planner_->plan(task, clock);
   }
   Followed followed{.task = whole,
+                    .version = whole.view().version(),
                     .before = observation.walk.size() - 1,
                     .walk = std::move(plan.walk),
                     .hashes = {observation.walk_hash}};
@@ -67,7 +67,8 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
 
 int PlannerPolicy::act_on(const Observation& observation, const Clock& clock) {
   const auto known = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
-    return plan.task.view() == observation.view() && plan.leads_on(observation) &&
+    return plan.task.view() == observation.view() && plan.version == observation.view().version() &&
+           plan.leads_on(observation) &&
            plan.task.has_sets_of(*observation.task);
   });
   const std::span<const NodeId> rest =

@@ -21,8 +21,9 @@ class PlannerPolicy final : public Policy {
   // A plan from somewhere on a walk, and the hash of that walk up to each of its steps, by which an episode is known to
   // be on it.
   struct Followed {
-    Task task;           // of the whole walk
-    std::size_t before;  // steps of the walk before the plan
+    Task task;              // of the whole walk
+    std::uint64_t version;  // of what was known
+    std::size_t before;     // steps of the walk before the plan
     std::vector<NodeId> walk;
     std::vector<std::uint64_t> hashes;  // as walk
 

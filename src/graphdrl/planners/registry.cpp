@@ -14,6 +14,7 @@
 #include "graphdrl/planners/local_search.h"
 #include "graphdrl/planners/paper_policy.h"
 #include "graphdrl/planners/planner_policy.h"
+#include "graphdrl/planners/rules.h"
 
 namespace graphdrl {
 namespace {
@@ -24,13 +25,16 @@ struct PolicyName {
   std::string_view parameters = {};  // as help shows them
 };
 
-constexpr std::array<PolicyName, 9> kNames = {{{"search", PolicyKind::kSearch, "[:ITERATIONS]"},
+constexpr std::array<PolicyName, 12> kNames = {{{"search", PolicyKind::kSearch, "[:ITERATIONS]"},
                                                {"beam", PolicyKind::kBeam, "[:W]"},
                                                {"guided", PolicyKind::kGuided, "[:W[:FILE]]"},
                                                {"dfs", PolicyKind::kDepthFirst},
                                                {"exact", PolicyKind::kExact},
                                                {"explorer", PolicyKind::kExplorer},
+                                               {"frontier", PolicyKind::kFrontier},
                                                {"nearest", PolicyKind::kNearest},
+                                               {"open", PolicyKind::kOpen},
+                                               {"pocket", PolicyKind::kPocket},
                                                {"random", PolicyKind::kRandom},
                                                {"random-walk", PolicyKind::kRandomWalk}}};
 
@@ -71,6 +75,14 @@ void parse_parameters(const std::string& name, std::string_view text, PolicySpec
   if (!file.empty()) spec.trained = read_explorer_parameters(file);
 }
 
+// Of the names that are rules on any map.
+std::optional<Rule> rule_of(PolicyKind kind) {
+  if (kind == PolicyKind::kPocket) return Rule::kPocket;
+  if (kind == PolicyKind::kOpen) return Rule::kOpen;
+  if (kind == PolicyKind::kFrontier) return Rule::kFrontier;
+  return std::nullopt;
+}
+
 std::unique_ptr<Planner> explorer_planner(SharedExplorer parameters) {
   return std::make_unique<ExplorerPlanner>(std::make_shared<ExplorerScorer>(std::move(parameters)));
 }
@@ -101,7 +113,7 @@ PolicySpec parse_policy(const std::string& name) {
 
 bool plans(const PolicySpec& spec) {
   if (spec.kind == PolicyKind::kFile) return std::holds_alternative<SharedExplorer>(spec.trained);
-  return spec.kind != PolicyKind::kRandom && spec.kind != PolicyKind::kRandomWalk;
+  return spec.kind != PolicyKind::kRandom && spec.kind != PolicyKind::kRandomWalk && !rule_of(spec.kind);
 }
 
 std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed) {
@@ -109,6 +121,9 @@ std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed
   switch (spec.kind) {
     case PolicyKind::kRandom:
     case PolicyKind::kRandomWalk:
+    case PolicyKind::kPocket:
+    case PolicyKind::kOpen:
+    case PolicyKind::kFrontier:
       return nullptr;
     case PolicyKind::kDepthFirst:
       return std::make_unique<DepthFirstPlanner>();
@@ -137,8 +152,15 @@ std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) 
   if (spec.kind == PolicyKind::kRandom || spec.kind == PolicyKind::kRandomWalk) {
     return std::make_unique<RandomPolicy>(seed, /*blocked_too=*/spec.kind == PolicyKind::kRandom);
   }
+  if (const auto rule = rule_of(spec.kind)) return std::make_unique<RulePolicy>(*rule);
   if (auto planner = make_planner(spec, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
   return std::make_unique<PaperPolicy>(std::get<PaperParameters>(spec.trained));
+}
+
+std::unique_ptr<Policy> make_online_policy(const PolicySpec& spec, std::uint64_t seed) {
+  if (spec.kind == PolicyKind::kNearest) return std::make_unique<RulePolicy>(Rule::kNearest);
+  if (spec.kind == PolicyKind::kDepthFirst) return std::make_unique<RulePolicy>(Rule::kDepthFirst);
+  return make_policy(spec, seed);
 }
 
 TrainedPolicy read_policy(const std::string& name) {

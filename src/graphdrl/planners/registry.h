@@ -16,7 +16,10 @@ namespace graphdrl {
 
 enum class PolicyKind {
   kRandom,
-  kRandomWalk,  // these two choose step by step, and so do the paper's networks in files; others plan whole walks
+  kRandomWalk,
+  kPocket,
+  kOpen,
+  kFrontier,  // these choose step by step, and so do the paper's networks in files; others plan whole walks
   kDepthFirst,
   kNearest,
   kBeam,
@@ -40,7 +43,7 @@ struct PolicySpec {
   std::string label = {};           // in tables: the name given, a file's stem
 };
 
-// `random`, `random-walk`, `dfs`, `nearest`, `beam[:W]`, `guided[:W[:FILE]]`, `explorer`, `search[:ITERATIONS]`,
+// `random`, `random-walk`, `dfs`, `nearest`, `pocket`, `open`, `frontier`, `beam[:W]`, `guided[:W[:FILE]]`, `explorer`, `search[:ITERATIONS]`,
 // `exact`, or a policy file, which is read here. Throws Error on any other name, and on a file that holds no policy.
 PolicySpec parse_policy(const std::string& name);
 
@@ -51,6 +54,8 @@ bool plans(const PolicySpec& spec);
 std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed = 1);
 // Whatever it is; planners are followed step by step. seed: of `search` and of random policies.
 std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed);
+// The same for an unknown map, of which more is known with each step: rules choose anew instead of planning on.
+std::unique_ptr<Policy> make_online_policy(const PolicySpec& spec, std::uint64_t seed);
 
 inline std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed = 1) {
   return make_planner(parse_policy(name), seed);

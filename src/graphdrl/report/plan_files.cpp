@@ -219,6 +219,13 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
   json["coverage"] = 100.0 * plan.visited / world.valid_count();
   if (world.has_prizes()) json["prize"] = plan.prize;
   json["cost"] = plan.cost;
+  if (!answer.reveal.all()) {
+    json["reveal"] = answer.reveal.text();
+    json["score"] = answer.score == Score::kSeen ? "seen" : "visited";
+    json["seen"] = answer.discovered.nodes.size();
+    json["seen_nodes"] = answer.discovered.nodes;
+    json["seen_after_step"] = answer.discovered.after_step;
+  }
   json["upper_bound"] = world.percent_of_all(plan.bound);
   if (world.has_prizes()) {
     json["max_prize"] = plan.bound;

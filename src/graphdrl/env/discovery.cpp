@@ -1,0 +1,304 @@
+#include "graphdrl/env/discovery.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <queue>
+#include <utility>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/text.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr int kRaysAround = 720;  // of sight, half a degree apart
+
+void shuffle(std::vector<NodeId>& nodes, Rng& rng) {
+  for (int left = static_cast<int>(nodes.size()); left > 1; --left) std::swap(nodes[rng.index(left)], nodes[left - 1]);
+}
+
+std::shared_ptr<Known> nothing_known(std::string name, EdgeKind kind, bool ordered) {
+  auto known = std::make_shared<Known>();
+  known->name = std::move(name);
+  known->version = 1;
+  known->ordered = ordered;
+  known->open = Graph(kind);
+  if (kind == EdgeKind::kDirected) {
+    known->into = Graph(kind);
+    known->both_ways = Graph(EdgeKind::kUndirected);
+  }
+  return known;
+}
+
+}  // namespace
+
+Reveal Reveal::parse(std::string_view text) {
+  Reveal reveal;
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  const std::string_view name = text.substr(0, colon);
+  const bool ranged = colon < text.size();
+  bool good = true;
+  if (name == "all" || name == "edges") {
+    reveal.kind_ = name == "all" ? Kind::kAll : Kind::kEdges;
+    good = !ranged;
+  } else if (name == "radius" || name == "sight") {
+    reveal.kind_ = name == "radius" ? Kind::kRadius : Kind::kSight;
+    const std::string_view number = ranged ? text.substr(colon + 1) : "";
+    const auto [rest, error] = std::from_chars(number.data(), number.data() + number.size(), reveal.range_);
+    good = error == std::errc() && rest == number.data() + number.size() && reveal.range_ > 0;
+  } else {
+    good = false;
+  }
+  if (good) return reveal;
+  throw Error({.what = "bad reveal",
+               .expected = "all, edges, radius:R or sight:R with R above 0",
+               .got = in_quotes(text)});
+}
+
+std::string Reveal::text() const {
+  switch (kind_) {
+    case Kind::kAll:
+      return "all";
+    case Kind::kEdges:
+      return "edges";
+    case Kind::kRadius:
+      return fmt::format("radius:{}", range_);
+    case Kind::kSight:
+      break;
+  }
+  return fmt::format("sight:{}", range_);
+}
+
+Discovery::Discovery(std::string name, EdgeKind kind, bool ordered)
+    : known_(nothing_known(std::move(name), kind, ordered)), view_(known_) {}
+
+NodeId Discovery::see(double prize) {
+  Known& known = *known_;
+  const NodeId node = known.open.add_node();
+  if (known.into) {
+    known.into->add_node();
+    known.both_ways->add_node();
+  }
+  if (known.prizes.empty() && prize != 1) known.prizes.assign(node, 1);
+  if (!known.prizes.empty()) known.prizes.push_back(prize);
+  known.blocked.push_back(false);
+  known.valid_nodes.push_back(node);
+  known.total_prize += prize;
+  known.frontier.push_back(true);
+  known.seen_at.push_back(static_cast<std::uint32_t>(known.version));
+  known.recent.push_back(node);
+  if (to_end_ != nullptr) to_end_->push_back(kNoLimit);
+  return node;
+}
+
+void Discovery::connect(const Edge& edge, const Graph::Places& places) {
+  Known& known = *known_;
+  if (known.open.index_of(edge.a, edge.b) >= 0) return;
+  known.open.add_edge(edge, places);
+  if (known.into) {
+    known.into->add_edge({edge.b, edge.a, edge.cost});
+    if (known.both_ways->index_of(edge.a, edge.b) < 0) known.both_ways->add_edge({edge.a, edge.b, 1});
+  }
+  for (const NodeId node : {edge.a, edge.b}) {
+    if (!known.frontier[node]) continue;
+    known.seen_at[node] = static_cast<std::uint32_t>(known.version);
+    if (known.recent.empty() || known.recent.back() != node) known.recent.push_back(node);
+  }
+  if (to_end_ == nullptr) return;
+  shorten(edge.a, (*to_end_)[edge.b] + edge.cost);
+  if (!known.open.directed()) shorten(edge.b, (*to_end_)[edge.a] + edge.cost);
+}
+
+void Discovery::close(NodeId node) {
+  Known& known = *known_;
+  known.frontier[node] = false;
+  while (!known.recent.empty() && !known.frontier[known.recent.back()]) known.recent.pop_back();
+}
+
+std::shared_ptr<const std::vector<double>> Discovery::keep_costs_to(NodeId end) {
+  to_end_ = std::make_shared<std::vector<double>>(costs_to(view_.into(), end));
+  return to_end_;
+}
+
+// There may be a cheaper way from a node to the end. Dijkstra's algorithm, among those whose way gets cheaper by it.
+void Discovery::shorten(NodeId from, double cost) {
+  using Reached = std::pair<double, NodeId>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> heap;
+  std::vector<double>& costs = *to_end_;
+  const auto reach = [&](NodeId node, double cheaper) {
+    if (cheaper >= costs[node]) return;
+    costs[node] = cheaper;
+    heap.emplace(cheaper, node);
+  };
+  reach(from, cost);
+  const Graph& into = view_.into();
+  while (!heap.empty()) {
+    const auto [here, node] = heap.top();
+    heap.pop();
+    if (here > costs[node]) continue;
+    for (int i = 0; i < into.degree(node); ++i) reach(into.neighbours(node)[i], here + into.cost(node, i));
+  }
+}
+
+HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, NodeId start, std::uint64_t seed)
+    : world_(world),
+      reveal_(reveal),
+      score_(score),
+      rng_(seed),
+      discovery_(world.name(), world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected, world.has_cells()),
+      known_as_(world.node_count(), kNoNode) {
+  if (reveal.kind() == Reveal::Kind::kSight) {
+    if (!world.has_cells()) {
+      throw Error({.what = "sight needs a map of cells", .got = reveal.text(), .where = world.name()});
+    }
+    seen_cells_.resize(world.node_count());
+  }
+  visit(see(start));
+}
+
+NodeId HiddenWorld::see(NodeId in_world) {
+  NodeId& node = known_as_[in_world];
+  if (node != kNoNode) return node;
+  node = discovery_.see(world_.prize(in_world));
+  in_world_.push_back(in_world);
+  ground_.grow(node + 1);
+  return node;
+}
+
+// Makes the edge to a node's neighbour at a place known. REQUIRES: both ends are seen. In lists of cells neighbours keep
+// the order of directions, which cells show.
+void HiddenWorld::connect(NodeId from, int place) {
+  const Graph& open = world_.open();
+  const NodeId to = open.neighbours(from)[place];
+  const auto knows = [&](NodeId a, NodeId b) {
+    return known_as_[b] != kNoNode && view().open().index_of(known_as_[a], known_as_[b]) >= 0;
+  };
+  if (knows(from, to)) return;
+  Graph::Places places;
+  if (world_.has_cells()) {
+    const auto place_of = [&](NodeId a, NodeId b) {
+      const auto neighbours = open.neighbours(a);
+      return static_cast<int>(std::count_if(neighbours.begin(), std::ranges::find(neighbours, b),
+                                            [&](NodeId before) { return knows(a, before); }));
+    };
+    places = {.of_b = place_of(from, to), .of_a = place_of(to, from)};
+  }
+  discovery_.connect({known_as_[from], known_as_[to], open.cost(from, place)}, places);
+}
+
+void HiddenWorld::close(NodeId node) {
+  discovery_.close(node);
+  if (score_ == Score::kSeen) ground_.insert(node);
+}
+
+void HiddenWorld::visit(NodeId node) {
+  discovery_.begin_visit();
+  ground_.insert(node);
+  if (reveal_.kind() == Reveal::Kind::kSight) return show_sight(node);
+  show_edges(node);
+  if (reveal_.kind() == Reveal::Kind::kRadius) show_radius(node);
+}
+
+void HiddenWorld::show_edges(NodeId node) {
+  const NodeId here = in_world_[node];
+  const auto neighbours = world_.open_neighbours(here);
+  std::vector<NodeId> fresh;
+  for (const NodeId next : neighbours) {
+    if (known_as_[next] == kNoNode) fresh.push_back(next);
+  }
+  if (!world_.has_cells()) shuffle(fresh, rng_);
+  for (const NodeId next : fresh) see(next);
+  for (int place = 0; place < std::ssize(neighbours); ++place) connect(here, place);
+  close(node);
+}
+
+void HiddenWorld::show_radius(NodeId node) {
+  const Graph& open = world_.open();
+  std::vector<NodeId> near;
+  search_.run_cheapest(open, in_world_[node], reveal_.range(), [&](NodeId next, double) {
+    near.push_back(next);
+    return NearestFirst::Next::kThrough;
+  });
+  std::vector<NodeId> order = near;
+  if (!world_.has_cells()) shuffle(order, rng_);
+  for (const NodeId next : order) see(next);
+  for (const NodeId next : near) {
+    bool whole = true;
+    for (int place = 0; place < open.degree(next); ++place) {
+      const bool seen = known_as_[open.neighbours(next)[place]] != kNoNode;
+      if (seen) connect(next, place);
+      whole = whole && seen;
+    }
+    if (whole) close(known_as_[next]);
+  }
+}
+
+// Bresenham's lines from the middle of the cell, a point on the circle each, up to the first obstacle or the map's edge.
+void HiddenWorld::show_sight(NodeId node) {
+  const GridMap& map = *world_.map();
+  const Cell here = map.cell(in_world_[node]);
+  const double cells = std::min(reveal_.range() / (map.frame ? map.frame->cell_size : 1.0),
+                                static_cast<double>(map.rows + map.cols));
+  std::vector<NodeId> fresh;
+  const auto look_at = [&](const Cell& cell) {
+    const NodeId seen = map.node(cell);
+    if (!seen_cells_[seen]) {
+      seen_cells_[seen] = true;
+      fresh.push_back(seen);
+    }
+    return map.is_free(cell);
+  };
+  look_at(here);
+  for (int ray = 0; ray < kRaysAround; ++ray) {
+    const double angle = 2 * std::numbers::pi * ray / kRaysAround;
+    const int rows = static_cast<int>(std::lround(cells * std::sin(angle)));
+    const int cols = static_cast<int>(std::lround(cells * std::cos(angle)));
+    const int steps = std::max(std::abs(rows), std::abs(cols));
+    for (int step = 1; step <= steps; ++step) {
+      const Cell cell = {here.row + static_cast<int>(std::lround(static_cast<double>(rows) * step / steps)),
+                         here.col + static_cast<int>(std::lround(static_cast<double>(cols) * step / steps))};
+      if (!map.contains(cell) || !look_at(cell)) break;
+    }
+  }
+  // A robot feels the cells around it.
+  for (const Cell& step : map.steps()) {
+    if (map.contains(here + step)) look_at(here + step);
+  }
+  show_cells(std::move(fresh));
+}
+
+// Cells are seen for the first time. An edge is known once its ends are, and of a diagonal the cells beside it.
+void HiddenWorld::show_cells(std::vector<NodeId> cells) {
+  const GridMap& map = *world_.map();
+  std::sort(cells.begin(), cells.end());
+  std::vector<NodeId> touched;  // free cells whose edges may be known now
+  for (const NodeId cell : cells) {
+    if (!map.blocked[cell]) see(cell);
+    for (int row = -1; row <= 1; ++row) {
+      for (int col = -1; col <= 1; ++col) {
+        const Cell near = map.cell(cell) + Cell{row, col};
+        if (map.contains(near) && map.is_free(near) && seen_cells_[map.node(near)]) touched.push_back(map.node(near));
+      }
+    }
+  }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  for (const NodeId from : touched) {
+    const auto neighbours = world_.open_neighbours(from);
+    const Cell at = map.cell(from);
+    for (int place = 0; place < std::ssize(neighbours); ++place) {
+      const Cell to = map.cell(neighbours[place]);
+      const bool seen = seen_cells_[neighbours[place]] && seen_cells_[map.node({at.row, to.col})] &&
+                        seen_cells_[map.node({to.row, at.col})];
+      if (seen && known_as_[neighbours[place]] != kNoNode) connect(from, place);
+    }
+    const auto unseen = [&](const Cell& step) { return map.contains(at + step) && !seen_cells_[map.node(at + step)]; };
+    if (view().is_frontier(known_as_[from]) && std::ranges::none_of(map.steps(), unseen)) close(known_as_[from]);
+  }
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,121 @@
+// Unknown maps: what becomes known of a world while a walk explores it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/env/world.h"
+#include "graphdrl/graph/node_set.h"
+#include "graphdrl/graph/search.h"
+
+namespace graphdrl {
+
+// What a visit shows.
+class Reveal {
+ public:
+  enum class Kind {
+    kAll,     // the map is known beforehand
+    kEdges,   // the edges that lead on from the node, and their ends: the fixed graph scenario [Kalyanasundaram and
+              // Pruhs 1994]
+    kRadius,  // all within a cost; of a node seen it shows whether more edges lead on
+    kSight,   // on grids: what straight lines of a length meet, up to the first obstacle
+  };
+
+  // "all", "edges", "radius:R" or "sight:R". Throws Error on anything else, and unless R > 0.
+  static Reveal parse(std::string_view text);
+
+  Kind kind() const { return kind_; }
+  bool all() const { return kind_ == Kind::kAll; }
+  double range() const { return range_; }  // of a radius in units of cost, of sight in the map's unit; may be infinite
+  std::string text() const;
+
+ private:
+  Kind kind_ = Kind::kAll;
+  double range_ = 0;
+};
+
+// What is counted.
+enum class Score {
+  kVisited,  // nodes entered
+  kSeen,     // nodes that visits showed
+};
+
+// A graph that grows by what it is told. It numbers nodes in the order in which they are seen.
+class Discovery {
+ public:
+  // name: of the world, for messages. ordered: see Known.
+  Discovery(std::string name, EdgeKind kind, bool ordered = false);
+
+  const View& view() const { return view_; }
+
+  // A new node is seen, on the frontier. prize: of its first visit.
+  NodeId see(double prize = 1);
+  // Makes an edge between nodes seen known; does nothing where it is. Frontier nodes at its ends are seen again.
+  // places: as Graph::add_edge().
+  void connect(const Edge& edge, const Graph::Places& places = {});
+  // All edges of the node are known now: it is no frontier any more.
+  void close(NodeId node);
+  // What is shown from here on is a later visit's.
+  void begin_visit() { ++known_->version; }
+
+  // The cost from each node to one of them, kNoLimit where no way is known: [N], kept up to date from then on.
+  std::shared_ptr<const std::vector<double>> keep_costs_to(NodeId end);
+
+ private:
+  void shorten(NodeId from, double cost);
+
+  std::shared_ptr<Known> known_;
+  View view_;
+  std::shared_ptr<std::vector<double>> to_end_;  // null until it is asked for
+};
+
+// A world of which a walk sees no more than its visits show. Nodes have two numbers: the world's, and the one by which
+// the walk knows them.
+//
+// Nothing else of the world gets through: where nodes have no cells, those that a visit shows for the first time are
+// numbered in random order.
+class HiddenWorld {
+ public:
+  // Begins at a node of the world, which it visits. Throws Error on a reveal that the world does not have: sight
+  // without cells. seed: of the numbers of nodes.
+  HiddenWorld(const World& world, const Reveal& reveal, Score score, NodeId start, std::uint64_t seed);
+
+  const Discovery& discovery() const { return discovery_; }
+  Discovery& discovery() { return discovery_; }
+  const View& view() const { return discovery_.view(); }
+
+  // A node is entered, and shows what it shows. Cost: what it shows.
+  void visit(NodeId node);
+
+  // What first visits walk through: nodes visited; where what is seen counts, those whose edges are all known, too.
+  const NodeSet& ground() const { return ground_; }
+
+  NodeId in_world(NodeId node) const { return in_world_[node]; }
+  NodeId known_as(NodeId in_world) const { return known_as_[in_world]; }  // kNoNode: not seen yet
+
+ private:
+  NodeId see(NodeId in_world);
+  void connect(NodeId from, int place);
+  void close(NodeId node);
+  void show_edges(NodeId node);
+  void show_radius(NodeId node);
+  void show_sight(NodeId node);
+  void show_cells(std::vector<NodeId> cells);
+
+  World world_;
+  Reveal reveal_;
+  Score score_;
+  Rng rng_;
+  Discovery discovery_;
+  std::vector<NodeId> in_world_;   // [seen]
+  std::vector<NodeId> known_as_;   // [N of the world]
+  std::vector<bool> seen_cells_;   // [cells], obstacles too; of sight
+  NodeSet ground_;
+  NearestFirst search_;
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,192 @@
+#include "graphdrl/planners/rules.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "graphdrl/base/random.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::size_t kMostTrips = 64;       // as many as the episodes of a block in eval/rollout
+constexpr double kAsNear = 1 + 1e-9;         // distances that differ by rounding alone
+constexpr double kDistanceWeight = 3;        // explore_lite's potential_scale, its default
+constexpr double kSizeWeight = 1;            // its gain_scale
+
+int visited_neighbours(const Exploration& now, NodeId node) {
+  const auto neighbours = now.view().into().neighbours(node);
+  return static_cast<int>(
+      std::ranges::count_if(neighbours, [&](NodeId next) { return now.ground().contains(next); }));
+}
+
+std::uint32_t seen_at(const View& view, NodeId node) {
+  return view.grows() ? view.seen_at(node) : 0;
+}
+
+// Takes the best of what it is offered; of ties the first, or any with the same chance.
+template <typename Rank>
+class Best {
+ public:
+  Best(bool first, std::uint64_t seed) : first_(first), seed_(seed) {}
+
+  void offer(NodeId node, const Rank& rank) {
+    if (node_ != kNoNode && rank < rank_) return;
+    if (node_ == kNoNode || rank_ < rank) {
+      ties_ = 0;
+    } else if (first_) {
+      return;
+    }
+    ++ties_;
+    if (ties_ > 1 && derive_seed(seed_, ties_) % ties_ != 0) return;
+    node_ = node;
+    rank_ = rank;
+  }
+  NodeId node() const { return node_; }
+  const Rank& rank() const { return rank_; }
+
+ private:
+  bool first_;
+  std::uint64_t seed_;
+  std::uint64_t ties_ = 0;
+  NodeId node_ = kNoNode;
+  Rank rank_ = {};
+};
+
+bool always(double /*cost*/) {
+  return true;
+}
+
+}  // namespace
+
+void RulePolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
+  for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i]);
+}
+
+int RulePolicy::act_on(const Observation& now) {
+  auto trip = std::ranges::find(trips_, now.walk_hash, &Trip::hash);
+  if (trip == trips_.end() || trip->way.empty() || trip->version != now.view().version()) {
+    const Exploration exploration(now, now.ground());
+    NodeId goal = choose(exploration, now.walk_hash);
+    if (goal == kNoNode) {
+      const NodeId end = now.task->end();
+      if (end == kNoNode || end == now.position) return kStop;
+      search_.run_cheapest(now.view().open(), now.position, kNoLimit, [&](NodeId node, double) {
+        return node == end ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+      });
+      goal = end;
+    }
+    if (trip == trips_.end()) {
+      if (trips_.size() < kMostTrips) trips_.emplace_back();
+      trip = trips_.begin() + (trips_.size() < kMostTrips ? std::ssize(trips_) - 1 : oldest_++ % kMostTrips);
+    }
+    trip->version = now.view().version();
+    trip->way.clear();
+    search_.append_path_to(goal, trip->way);
+    std::ranges::reverse(trip->way);
+  }
+  const NodeId next = trip->way.back();
+  trip->way.pop_back();
+  trip->hash = extended_walk_hash(now.walk_hash, next);
+  const int action = now.action_to(next);
+  if (action == kNoAction || !now.affordable(action)) throw std::logic_error("a rule takes a step that cannot be taken");
+  return action;
+}
+
+// The way there is that of the last search.
+NodeId RulePolicy::choose(const Exploration& now, std::uint64_t walk_hash) {
+  switch (rule_) {
+    case Rule::kDepthFirst:
+      return choose_last_seen(now, walk_hash);
+    case Rule::kFrontier:
+      return choose_by_frontier(now);
+    case Rule::kNearest:
+    case Rule::kPocket:
+    case Rule::kOpen:
+      break;
+  }
+  return choose_nearest(now, walk_hash);
+}
+
+NodeId RulePolicy::choose_nearest(const Exploration& now, std::uint64_t walk_hash) {
+  const bool first = now.view().ordered();
+  Best<std::pair<int, std::uint32_t>> best(first, walk_hash);  // by neighbours visited, then by when it was seen
+  double nearest = kNoLimit;
+  const auto look_at = [&](NodeId node, double cost) {
+    if (cost > nearest * kAsNear) return false;
+    nearest = std::min(nearest, cost);
+    if (rule_ == Rule::kNearest) {
+      best.offer(node, {});
+      return !first;
+    }
+    best.offer(node, {visited_neighbours(now, node) * (rule_ == Rule::kOpen ? -1 : 1), seen_at(now.view(), node)});
+    return true;
+  };
+  now.for_first_visits(search_, look_at, always);
+  return best.node();
+}
+
+NodeId RulePolicy::choose_last_seen(const Exploration& now, std::uint64_t walk_hash) {
+  const View& view = now.view();
+  // Nothing was seen later.
+  std::uint32_t last = 0;
+  const auto recent = view.recent();
+  for (auto node = recent.rbegin(); node != recent.rend() && last == 0; ++node) {
+    if (view.is_frontier(*node) && now.is_new(*node)) last = view.seen_at(*node);
+  }
+  Best<std::pair<std::uint32_t, double>> best(view.ordered(), walk_hash);  // by when it was seen, then by nearness
+  const auto look_at = [&](NodeId node, double cost) {
+    if (best.node() != kNoNode && best.rank().first == last && cost > -best.rank().second * kAsNear) return false;
+    best.offer(node, {seen_at(view, node), -cost});
+    return !view.ordered() || best.rank().first != last;
+  };
+  now.for_first_visits(search_, look_at, always);
+  return best.node();
+}
+
+// The frontier falls into parts: first visits next to each other, or next to the same visited node.
+NodeId RulePolicy::choose_by_frontier(const Exploration& now) {
+  std::vector<FirstVisit> visits;
+  std::unordered_map<NodeId, int> place_of;
+  now.for_first_visits(
+      search_,
+      [&](NodeId node, double cost) {
+        place_of.emplace(node, static_cast<int>(visits.size()));
+        visits.push_back({node, cost});
+        return true;
+      },
+      always);
+  const Graph& both_ways = now.view().both_ways();
+  NodeId best = kNoNode;
+  double least = kNoLimit;
+  std::vector<bool> met(visits.size());
+  for (int first = 0; first < std::ssize(visits); ++first) {
+    if (met[first]) continue;
+    met[first] = true;
+    std::vector<int> part = {first};
+    const auto meet = [&](NodeId node) {
+      const auto place = place_of.find(node);
+      if (place == place_of.end() || met[place->second]) return;
+      met[place->second] = true;
+      part.push_back(place->second);
+    };
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      for (const NodeId next : both_ways.neighbours(visits[part[i]].node)) {
+        meet(next);
+        if (!now.ground().contains(next)) continue;
+        for (const NodeId beside : both_ways.neighbours(next)) meet(beside);
+      }
+    }
+    // The first of a part is its nearest.
+    const double potential = kDistanceWeight * visits[first].cost -
+                             kSizeWeight * now.view().open().mean_cost() * static_cast<double>(part.size());
+    if (potential < least) {
+      least = potential;
+      best = visits[first].node;
+    }
+  }
+  return best;
+}
+
+}  // namespace graphdrl

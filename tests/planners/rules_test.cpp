@@ -1,0 +1,77 @@
+#include "graphdrl/planners/rules.h"
+
+#include <gmock/gmock.h>
+
+#include "graphdrl/eval/rollout.h"
+#include "graphdrl/planners/baselines.h"
+#include "graphdrl/planners/registry.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::ElementsAre;
+
+World graph_world(int nodes, const std::vector<Edge>& edges) {
+  return World("graph", Graph::from_edges(nodes, edges), std::vector<bool>(nodes));
+}
+
+std::vector<NodeId> explored(const World& world, Rule rule, double budget, std::uint64_t seed = 1) {
+  RulePolicy policy(rule);
+  return plan_by_steps(world, Task(world, 0, budget),
+                       {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges"), .numbers_seed = seed},
+                       policy)
+      .walk;
+}
+
+// Cells show directions, and the nearest node is the same whether more is known or not.
+TEST(RulePolicy, NearestWalksAnUnknownGridAsAKnownOne) {
+  Rng rng(4);
+  for (int round = 0; round < 20; ++round) {
+    const World world = random_world(rng, 9, 9, 0.25);
+    const Task task(world, world.valid_nodes().front(), 60);
+    const std::vector<NodeId> known = NearestPlanner().plan(task).walk;
+    RulePolicy policy(Rule::kNearest);
+    const EpisodeOptions options{.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges")};
+    EXPECT_EQ(plan_by_steps(world, task, options, policy).walk, known);
+  }
+}
+
+TEST(RulePolicy, DepthFirstGoesOnFromWhatItSawLast) {
+  //     1 - 2 - 3
+  // 0 <
+  //     4
+  const World world = graph_world(5, {{0, 1}, {1, 2}, {2, 3}, {0, 4}});
+  const std::vector<NodeId> walk = explored(world, Rule::kDepthFirst, 20);
+  if (walk[1] == 1) {
+    EXPECT_THAT(walk, ElementsAre(0, 1, 2, 3, 2, 1, 0, 4));
+  } else {
+    EXPECT_THAT(walk, ElementsAre(0, 4, 0, 1, 2, 3));
+  }
+}
+
+// After 0 and 1 both 2 and 3 are one step away: 2 has two visited neighbours, 3 has one.
+TEST(RulePolicy, TiesGoByVisitedNeighbours) {
+  const World world = graph_world(5, {{0, 1, 1}, {0, 2, 1.5}, {1, 2, 1.5}, {1, 3, 1.5}, {3, 4, 9}});
+  EXPECT_EQ(explored(world, Rule::kPocket, 20)[2], 2);
+  EXPECT_EQ(explored(world, Rule::kOpen, 20)[2], 3);
+}
+
+TEST(RulePolicy, TiesGoAnywhereElse) {
+  const World star = graph_world(4, {{0, 1}, {0, 2}, {0, 3}});
+  int first[4] = {};
+  for (std::uint64_t seed = 0; seed < 90; ++seed) ++first[explored(star, Rule::kNearest, 1, seed)[1]];
+  for (int node = 1; node < 4; ++node) EXPECT_GT(first[node], 15) << node;
+}
+
+// explore_lite goes past one near cell to a large frontier.
+TEST(RulePolicy, FrontierWeighsDistanceAgainstSize) {
+  std::vector<Edge> edges = {{0, 1}, {0, 2, 1.5}, {2, 3, 1}};
+  for (NodeId node = 4; node < 12; ++node) edges.push_back({2, node, 1});
+  const World world = graph_world(12, edges);
+  const std::vector<NodeId> walk = explored(world, Rule::kFrontier, 40);
+  EXPECT_EQ(std::ranges::find(walk, 1) - walk.begin() > 3, walk[1] == 2) << "1 waits once the star is seen";
+}
+
+}  // namespace
+}  // namespace graphdrl
