@@ -233,7 +233,7 @@ void bind_policies(nb::module_& module) {
   module.def(
       "read_policy",
       [](const std::string& path) -> nb::object {
-        TrainedPolicy policy = read_policy(path);
+        KnownMapPolicy policy = read_known_map_policy(path);
         if (auto* const explorer = std::get_if<SharedExplorer>(&policy)) {
           return nb::cast(std::make_unique<Explorer>(*explorer));
         }

@@ -25,9 +25,8 @@ std::vector<Edge> random_edges(Rng& rng, int nodes, int more, int most_cost) {
   for (int i = 0; i < more; ++i) {
     const NodeId a = rng.index(nodes);
     const NodeId b = rng.index(nodes);
-    const bool there = std::ranges::any_of(edges, [&](const Edge& edge) {
-      return (edge.a == a && edge.b == b) || (edge.a == b && edge.b == a);
-    });
+    const bool there = std::ranges::any_of(
+        edges, [&](const Edge& edge) { return (edge.a == a && edge.b == b) || (edge.a == b && edge.b == a); });
     if (a != b && !there) edges.push_back({a, b, cost()});
   }
   return edges;
@@ -48,8 +47,8 @@ TEST(Reveal, Parses) {
   for (const char* const text : {"all", "edges", "radius:2.5", "sight:inf"}) {
     EXPECT_EQ(Reveal::parse(text).text(), text);
   }
-  for (const char* const text : {"", "edge", "edges:1", "radius", "radius:", "radius:0", "radius:-1", "radius:nan",
-                                 "sight:2m", "all:3"}) {
+  for (const char* const text :
+       {"", "edge", "edges:1", "radius", "radius:", "radius:0", "radius:-1", "radius:nan", "sight:2m", "all:3"}) {
     EXPECT_THAT(error_of([&] { Reveal::parse(text); }), HasSubstr("bad reveal")) << text;
   }
 }
@@ -72,7 +71,8 @@ TEST(Discovery, KeepsCostsToTheEnd) {
 
 TEST(HiddenWorld, ShowsTheEdgesOfNodesVisited) {
   //  0 - 1 - 2 - 3, and 0 - 3
-  HiddenWorld hidden(hidden_graph(4, {{0, 1}, {1, 2}, {2, 3}, {0, 3, 5}}), Reveal::parse("edges"), Score::kVisited, 1, 7);
+  HiddenWorld hidden(hidden_graph(4, {{0, 1}, {1, 2}, {2, 3}, {0, 3, 5}}), Reveal::parse("edges"), Score::kVisited, 1,
+                     7);
   EXPECT_EQ(hidden.known_as(1), 0);
   EXPECT_THAT(seen(hidden), UnorderedElementsAre(1, 0, 2));
   EXPECT_EQ(hidden.known_as(3), kNoNode);
@@ -124,7 +124,7 @@ std::vector<NodeId> explore(Episode& episode, Policy& policy, int visits = 1 << 
   return episode.walk_in_world();
 }
 
-const std::vector<std::string> kPolicies = {"nearest", "dfs",    "pocket", "open",      "frontier",
+const std::vector<std::string> kPolicies = {"nearest", "dfs",       "pocket",   "open",       "frontier",
                                             "beam:3",  "search:40", "explorer", "random-walk"};
 
 // What is not seen may be anything: edges between nodes that were not visited.
@@ -169,7 +169,8 @@ TEST(HiddenWorld, GivesNumbersThatTellNothing) {
   Rng rng(3);
   std::vector<NodeId> renamed(kSide * kSide);
   for (NodeId node = 0; node < std::ssize(renamed); ++node) renamed[node] = node;
-  for (int left = static_cast<int>(renamed.size()); left > 1; --left) std::swap(renamed[rng.index(left)], renamed[left - 1]);
+  for (int left = static_cast<int>(renamed.size()); left > 1; --left)
+    std::swap(renamed[rng.index(left)], renamed[left - 1]);
   std::vector<Edge> edges = grid.edges();
   const World in_order = hidden_graph(kSide * kSide, edges);
   for (Edge& edge : edges) edge = {renamed[edge.a], renamed[edge.b]};
@@ -230,8 +231,9 @@ TEST(HiddenEpisode, TakesANodeForItsEndOnceItIsSeen) {
 
 TEST(HiddenEpisode, CountsWhatIsSeen) {
   const World path = hidden_graph(5, {{0, 1}, {1, 2}, {2, 3}, {3, 4}});
-  Episode episode(path, Task(path, 0, 6),
-                  {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("radius:2"), .score = Score::kSeen});
+  Episode episode(
+      path, Task(path, 0, 6),
+      {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("radius:2"), .score = Score::kSeen});
   EXPECT_EQ(episode.prize(), 3);
   const auto policy = make_online_policy(parse_policy("nearest"), 1);
   EXPECT_THAT(explore(episode, *policy), ElementsAre(0, 1, 2)) << "everything has been seen";

@@ -50,7 +50,8 @@ class TwoSteps final : public Policy {
 TEST(PlanBySteps, EndsByTheCheapestWay) {
   const World world("dear", Graph::complete(3, std::make_shared<DearStraightWay>()), std::vector<bool>(3));
   TwoSteps policy;
-  const Plan plan = plan_by_steps(world, Task(world, 0, 4, End::at_start()), {.action_space = action_space_of(world)}, policy);
+  const Plan plan =
+      plan_by_steps(world, Task(world, 0, 4, End::at_start()), {.action_space = action_space_of(world)}, policy);
   EXPECT_EQ(plan.walk, (std::vector<NodeId>{0, 1, 2, 1, 0}));
   EXPECT_EQ(plan.cost, 4);
 }
@@ -64,7 +65,8 @@ TEST(RollOut, EndsWhereMovesAreFree) {
     for (const RolloutResult& result : roll_out(Episode(world, options), world.valid_nodes(), *policy)) {
       EXPECT_LT(result.walk.size(), 200U) << name;
     }
-    const Plan plan = plan_by_steps(world, Task(world, 0, 3, End::at_start()), {.action_space = action_space_of(world)}, *policy);
+    const Plan plan =
+        plan_by_steps(world, Task(world, 0, 3, End::at_start()), {.action_space = action_space_of(world)}, *policy);
     EXPECT_EQ(plan.visited, 3) << name;
     EXPECT_EQ(plan.walk.back(), 0) << name;
   }

@@ -216,7 +216,8 @@ TEST(Graph, GrowsIntoTheSameGraph) {
           if (rng.uniform() < 0.4) edges.push_back({a, b, step == 1 ? 1 : step * (1 + rng.index(5))});
         }
       }
-      for (int left = static_cast<int>(edges.size()); left > 1; --left) std::swap(edges[rng.index(left)], edges[left - 1]);
+      for (int left = static_cast<int>(edges.size()); left > 1; --left)
+        std::swap(edges[rng.index(left)], edges[left - 1]);
       Graph grown(kind);
       for (NodeId node = 0; node < 30; ++node) EXPECT_EQ(grown.add_node(), node);
       for (const Edge& edge : edges) grown.add_edge(edge);

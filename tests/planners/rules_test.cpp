@@ -18,9 +18,9 @@ World graph_world(int nodes, const std::vector<Edge>& edges) {
 
 std::vector<NodeId> explored(const World& world, Rule rule, double budget, std::uint64_t seed = 1) {
   RulePolicy policy(rule);
-  return plan_by_steps(world, Task(world, 0, budget),
-                       {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges"), .numbers_seed = seed},
-                       policy)
+  return plan_by_steps(
+             world, Task(world, 0, budget),
+             {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges"), .numbers_seed = seed}, policy)
       .walk;
 }
 

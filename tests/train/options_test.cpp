@@ -32,6 +32,12 @@ TEST(TrainOptions, AreChecked) {
   };
   const auto paper = [&](auto change) { return error_for(kPaperPreset, change); };
   const auto explorer = [&](auto change) { return error_for(kExplorerPreset, change); };
+  EXPECT_THAT(explorer([](TrainOptions& o) { o.reveal = "sight"; }), HasSubstr("expected all or edges"));
+  EXPECT_THAT(explorer([](TrainOptions& o) {
+                o.reveal = "edges";
+                o.teacher_steps = 5;
+              }),
+              HasSubstr("--teacher-steps and --ranking go with --reveal all"));
   EXPECT_THAT(paper([](TrainOptions& o) { o.preset = "best"; }), HasSubstr("--preset"));
   EXPECT_THAT(paper([](TrainOptions& o) { o.reward = "gold"; }), HasSubstr("visit_penalty or coverage_gain"));
   EXPECT_THAT(paper([](TrainOptions& o) { o.episodes = 0; }), HasSubstr("--episodes"));

@@ -23,10 +23,12 @@ TrainOptions with_double_dqn(TrainOptions options) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, AnyTraining,
-                         ::testing::Values(short_paper(), with_double_dqn(short_paper()), short_explorer()),
+                         ::testing::Values(short_paper(), with_double_dqn(short_paper()), short_explorer(),
+                                           short_online()),
                          [](const auto& test) {
                            const TrainOptions& options = test.param;
-                           return options.preset == kPaperPreset ? "paper_" + options.algorithm : options.preset;
+                           return options.preset == kPaperPreset ? "paper_" + options.algorithm
+                                                                 : "explorer_" + options.reveal;
                          });
 
 TEST_P(AnyTraining, GivesTheSameBytesForAnyNumberOfThreads) {

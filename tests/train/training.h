@@ -17,7 +17,7 @@ namespace graphdrl {
 // What a test is listed as.
 inline void PrintTo(const TrainOptions& options, std::ostream* out) {
   *out << options.preset;
-  if (options.preset == kPaperPreset) *out << ' ' << options.algorithm;
+  *out << ' ' << (options.preset == kPaperPreset ? options.algorithm : options.reveal);
 }
 
 // Steps of `short_paper`. It asks whether to stop before each, and after each episode.
@@ -46,6 +46,14 @@ inline TrainOptions short_explorer() {
   options.replay_capacity = 50;  // wraps around
   options.teacher_steps = 1;
   options.checkpoint_every = 1;
+  return options;
+}
+
+// The same of maps that are not known.
+inline TrainOptions short_online() {
+  TrainOptions options = short_explorer();
+  options.reveal = "edges";
+  options.teacher_steps = TrainOptions().teacher_steps;
   return options;
 }
 

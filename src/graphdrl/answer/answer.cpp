@@ -79,10 +79,11 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   if (planner != nullptr) {
     answer.plan = planner->plan(task, plan_clock);
   } else {
-    const EpisodeOptions options{.action_space = request.reveal.all() ? action_space_of(world) : ActionSpace::kNeighbours,
-                                 .reveal = request.reveal,
-                                 .score = request.score,
-                                 .numbers_seed = request.seed};
+    const EpisodeOptions options{
+        .action_space = request.reveal.all() ? action_space_of(world) : ActionSpace::kNeighbours,
+        .reveal = request.reveal,
+        .score = request.score,
+        .numbers_seed = request.seed};
     answer.plan = plan_by_steps(world, task, options, *policy, plan_clock, request.think_s, &answer.discovered);
   }
   check_plan(world, task, answer.plan);
@@ -127,7 +128,8 @@ std::vector<std::string> plan_summary(const Answer& answer) {
                                 100.0 * static_cast<double>(answer.discovered.nodes.size()) / world.valid_count()));
   }
   if (answer.score == Score::kSeen) return lines;
-  const std::string what = fmt::format("{}{}", hidden ? "that knew the map " : "", world.has_prizes() ? "is worth more" : "visits more");
+  const std::string what =
+      fmt::format("{}{}", hidden ? "that knew the map " : "", world.has_prizes() ? "is worth more" : "visits more");
   if (plan.optimal) {
     lines.push_back(fmt::format("optimal: no walk {}", what));
   } else {

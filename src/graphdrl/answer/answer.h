@@ -22,9 +22,9 @@ struct Answer {
   Plan plan;
   int unreachable = 0;  // valid nodes that no walk can reach, whatever it spends
   double elapsed_s = 0;
-  Reveal reveal = {};           // what was not known beforehand …
+  Reveal reveal = {};  // what was not known beforehand …
   Score score = Score::kVisited;
-  Discovered discovered = {};   // … and how it became known
+  Discovered discovered = {};  // … and how it became known
 
   // By any walk, at most: all valid nodes where the plan has no bound. REQUIRES: the world has no prizes.
   int max_visited() const { return static_cast<int>(std::clamp<double>(plan.bound, 0, world.valid_count())); }

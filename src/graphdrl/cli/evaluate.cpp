@@ -26,8 +26,7 @@ struct EvaluateOptions {
 // {mean, ci95} or null.
 Json mean_json(const std::optional<Summary>& summary) {
   if (!summary) return {};
-  return {{"mean", summary->mean},
-          {"ci95", summary->ci95 ? Json({summary->ci95->low, summary->ci95->high}) : Json()}};
+  return {{"mean", summary->mean}, {"ci95", summary->ci95 ? Json({summary->ci95->low, summary->ci95->high}) : Json()}};
 }
 
 Json to_json(const Comparison& comparison) {
@@ -116,10 +115,10 @@ void add_evaluate_command(CLI::App& app) {
                                     ->capture_default_str();
   command.add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
       ->excludes(episodes);
-  CLI::Option* const reveal = add_text_option(
-      command, "--reveal", options->reveal, "R",
-      "What is known of a map: all of it, or what visits show, edges, radius:R or sight:R, as of explore; then a table by "
-      "what --maps names");
+  CLI::Option* const reveal = add_text_option(command, "--reveal", options->reveal, "R",
+                                              "What is known of a map: all of it, or what visits show, edges, radius:R "
+                                              "or sight:R, as of explore; then a table by "
+                                              "what --maps names");
   reveal->capture_default_str();
   command.add_option("--score", options->score, "What counts of unknown maps: nodes visited, or nodes seen")
       ->check(CLI::IsMember({"visited", "seen"}))

@@ -24,7 +24,7 @@ void export_policy(const ExportOptions& options) {
     throw Error({.what = "bad name of a model", .expected = "FILE.onnx", .got = in_quotes(options.out), .where = "-o"});
   }
   check_writable(out);
-  const TrainedPolicy policy = read_policy(options.policy);
+  const KnownMapPolicy policy = read_known_map_policy(options.policy);
   if (const auto* const explorer = std::get_if<SharedExplorer>(&policy)) {
     write_onnx(out, **explorer);
   } else {

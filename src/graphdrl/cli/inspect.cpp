@@ -151,7 +151,7 @@ std::string format_tensors(const std::vector<TensorSpec>& specs) {
 }
 
 void inspect(const InspectOptions& options) {
-  TrainedPolicy trained = read_policy(options.policy);
+  KnownMapPolicy trained = read_known_map_policy(options.policy);
   auto* const explorer = std::get_if<SharedExplorer>(&trained);
   if (explorer == nullptr && options.budget_given) {
     throw Error({.what = "the paper's network looks at no budget", .where = "--budget"});

@@ -165,15 +165,17 @@ void add_explore_command(CLI::App& app) {
   options->reveal = "edges";
   options->request.policy = "pocket";
   add_shared_options(command, *options);
-  add_text_option(command, "--reveal", options->reveal, "R",
-                  "What a visit shows: edges, those of the node; radius:R, all within that cost; sight:R on grids, what "
-                  "straight lines of that length meet; all, the whole map")
+  add_text_option(
+      command, "--reveal", options->reveal, "R",
+      "What a visit shows: edges, those of the node; radius:R, all within that cost; sight:R on grids, what "
+      "straight lines of that length meet; all, the whole map")
       ->capture_default_str();
   command.add_option("--score", options->score, "What counts: nodes visited, or nodes seen")
       ->check(CLI::IsMember({"visited", "seen"}))
       ->capture_default_str();
   CLI::Option* const until =
-      command.add_option("--until", options->until, "Instead of a budget: covered, until nothing is left that is known")
+      command
+          .add_option("--until", options->until, "Instead of a budget: covered, until nothing is left that is known")
           ->check(CLI::IsMember({"covered"}));
   until->excludes(command.get_option("--budget"));
   command.add_option("--think-time", options->think_time_s, "Seconds for each choice, of policies that plan")

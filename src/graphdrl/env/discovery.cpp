@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -15,6 +16,7 @@
 namespace graphdrl {
 namespace {
 
+constexpr int kMostPaired = 5;    // neighbours of a node whose edges among each other are counted
 constexpr int kRaysAround = 720;  // of sight, half a degree apart
 
 void shuffle(std::vector<NodeId>& nodes, Rng& rng) {
@@ -54,9 +56,8 @@ Reveal Reveal::parse(std::string_view text) {
     good = false;
   }
   if (good) return reveal;
-  throw Error({.what = "bad reveal",
-               .expected = "all, edges, radius:R or sight:R with R above 0",
-               .got = in_quotes(text)});
+  throw Error(
+      {.what = "bad reveal", .expected = "all, edges, radius:R or sight:R with R above 0", .got = in_quotes(text)});
 }
 
 std::string Reveal::text() const {
@@ -76,6 +77,11 @@ std::string Reveal::text() const {
 Discovery::Discovery(std::string name, EdgeKind kind, bool ordered)
     : known_(nothing_known(std::move(name), kind, ordered)), view_(known_) {}
 
+Discovery::Discovery(const Discovery& other)
+    : known_(std::make_shared<Known>(*other.known_)),
+      view_(known_),
+      to_end_(other.to_end_ ? std::make_shared<std::vector<double>>(*other.to_end_) : nullptr) {}
+
 NodeId Discovery::see(double prize) {
   Known& known = *known_;
   const NodeId node = known.open.add_node();
@@ -89,7 +95,9 @@ NodeId Discovery::see(double prize) {
   known.valid_nodes.push_back(node);
   known.total_prize += prize;
   known.frontier.push_back(true);
+  known.first_seen.push_back(static_cast<std::uint32_t>(known.version));
   known.seen_at.push_back(static_cast<std::uint32_t>(known.version));
+  ++known.frontier_count;
   known.recent.push_back(node);
   if (to_end_ != nullptr) to_end_->push_back(kNoLimit);
   return node;
@@ -115,8 +123,40 @@ void Discovery::connect(const Edge& edge, const Graph::Places& places) {
 
 void Discovery::close(NodeId node) {
   Known& known = *known_;
+  if (!known.frontier[node]) return;
+  count(node);
   known.frontier[node] = false;
+  --known.frontier_count;
   while (!known.recent.empty() && !known.frontier[known.recent.back()]) known.recent.pop_back();
+}
+
+void Discovery::count(NodeId node) {
+  const Known& known = *known_;
+  Census& census = known_->census;
+  const auto neighbours = view_.both_ways().neighbours(node);
+  std::array<NodeId, kMostPaired> met{};
+  int met_count = 0;
+  bool fresh = false;
+  for (const NodeId next : neighbours) {
+    fresh = fresh || known.first_seen[next] == known.version;
+    if (known.frontier[next]) continue;
+    if (met_count < kMostPaired) met[met_count] = next;
+    ++met_count;
+  }
+  const auto degree = static_cast<double>(neighbours.size());
+  ++census.nodes;
+  census.degrees += degree;
+  census.squared_degrees += degree * degree;
+  census.met += met_count;
+  census.meetings += met_count > 1;
+  census.low += degree <= 2;
+  census.dead_ends += !fresh;
+  for (int a = 0; a < std::min(met_count, kMostPaired); ++a) {
+    for (int b = 0; b < a; ++b) {
+      ++census.pairs;
+      census.closed_pairs += view_.both_ways().index_of(met[a], met[b]) >= 0;
+    }
+  }
 }
 
 std::shared_ptr<const std::vector<double>> Discovery::keep_costs_to(NodeId end) {
@@ -149,7 +189,8 @@ HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, 
       reveal_(reveal),
       score_(score),
       rng_(seed),
-      discovery_(world.name(), world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected, world.has_cells()),
+      discovery_(world.name(), world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected,
+                 world.has_cells()),
       known_as_(world.node_count(), kNoNode) {
   if (reveal.kind() == Reveal::Kind::kSight) {
     if (!world.has_cells()) {
@@ -169,8 +210,8 @@ NodeId HiddenWorld::see(NodeId in_world) {
   return node;
 }
 
-// Makes the edge to a node's neighbour at a place known. REQUIRES: both ends are seen. In lists of cells neighbours keep
-// the order of directions, which cells show.
+// Makes the edge to a node's neighbour at a place known. REQUIRES: both ends are seen. In lists of cells neighbours
+// keep the order of directions, which cells show.
 void HiddenWorld::connect(NodeId from, int place) {
   const Graph& open = world_.open();
   const NodeId to = open.neighbours(from)[place];
@@ -237,12 +278,13 @@ void HiddenWorld::show_radius(NodeId node) {
   }
 }
 
-// Bresenham's lines from the middle of the cell, a point on the circle each, up to the first obstacle or the map's edge.
+// Bresenham's lines from the middle of the cell, a point on the circle each, up to the first obstacle or the map's
+// edge.
 void HiddenWorld::show_sight(NodeId node) {
   const GridMap& map = *world_.map();
   const Cell here = map.cell(in_world_[node]);
-  const double cells = std::min(reveal_.range() / (map.frame ? map.frame->cell_size : 1.0),
-                                static_cast<double>(map.rows + map.cols));
+  const double cells =
+      std::min(reveal_.range() / (map.frame ? map.frame->cell_size : 1.0), static_cast<double>(map.rows + map.cols));
   std::vector<NodeId> fresh;
   const auto look_at = [&](const Cell& cell) {
     const NodeId seen = map.node(cell);

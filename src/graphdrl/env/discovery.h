@@ -49,6 +49,8 @@ class Discovery {
  public:
   // name: of the world, for messages. ordered: see Known.
   Discovery(std::string name, EdgeKind kind, bool ordered = false);
+  Discovery(const Discovery& other);  // grows on its own, and has a view of its own
+  Discovery& operator=(const Discovery&) = delete;
 
   const View& view() const { return view_; }
 
@@ -64,8 +66,10 @@ class Discovery {
 
   // The cost from each node to one of them, kNoLimit where no way is known: [N], kept up to date from then on.
   std::shared_ptr<const std::vector<double>> keep_costs_to(NodeId end);
+  std::shared_ptr<const std::vector<double>> costs_kept() const { return to_end_; }  // null where none are
 
  private:
+  void count(NodeId node);
   void shorten(NodeId from, double cost);
 
   std::shared_ptr<Known> known_;
@@ -111,9 +115,9 @@ class HiddenWorld {
   Score score_;
   Rng rng_;
   Discovery discovery_;
-  std::vector<NodeId> in_world_;   // [seen]
-  std::vector<NodeId> known_as_;   // [N of the world]
-  std::vector<bool> seen_cells_;   // [cells], obstacles too; of sight
+  std::vector<NodeId> in_world_;  // [seen]
+  std::vector<NodeId> known_as_;  // [N of the world]
+  std::vector<bool> seen_cells_;  // [cells], obstacles too; of sight
   NodeSet ground_;
   NearestFirst search_;
 };

@@ -62,10 +62,17 @@ void Episode::begin_hidden(std::uint64_t number) {
   const std::uint64_t seed = derive_seed(options_.numbers_seed, number);
   hidden_ = std::make_shared<HiddenWorld>(world_, options_.reveal, options_.score, asked_.start(), seed);
   const NodeId start = hidden_->known_as(asked_.start());
-  task_ = asked_.ends_anywhere()
-              ? asked_.on(hidden_->view(), start, kNoNode, nullptr)
-              : asked_.on(hidden_->view(), start, start, hidden_->discovery().keep_costs_to(start));
+  task_ = asked_.ends_anywhere() ? asked_.on(hidden_->view(), start, kNoNode, nullptr)
+                                 : asked_.on(hidden_->view(), start, start, hidden_->discovery().keep_costs_to(start));
   visits_.assign(view().node_count(), 0);
+}
+
+Episode Episode::fork() const {
+  Episode copy = *this;
+  if (!hidden()) return copy;
+  copy.hidden_ = std::make_shared<HiddenWorld>(*hidden_);
+  copy.task_ = asked_.on(copy.hidden_->view(), task_.start(), task_.end(), copy.hidden_->discovery().costs_kept());
+  return copy;
 }
 
 std::vector<NodeId> Episode::walk_in_world() const {

@@ -50,7 +50,8 @@ struct StepResult {
 //
 // On an unknown map [EpisodeOptions::reveal] view, task, observations and walk know nodes by the numbers of their
 // discovery; in_world() gives those of the world. What is owed to an end that is a node is the way back to the start,
-// until that node has been seen and what is left pays for the way there. Copies share what is known: reset() them.
+// until that node has been seen and what is left pays for the way there. Plain copies share what is known: fork() or
+// reset() them.
 class Episode {
  public:
   // A walk of a task, begun at its start. Budget and end are the task's, not the options'. Throws Error on directions
@@ -62,6 +63,9 @@ class Episode {
   // Begins a new walk. Throws Error as a task's start_at(). number: of the walk; an unknown world's nodes get other
   // numbers in each.
   void reset(NodeId start, std::uint64_t number = 0);
+
+  // A copy that goes on alone.
+  Episode fork() const;
 
   // REQUIRES: !done(), 0 <= action < observation().action_count(), and the action can be paid for.
   StepResult step(int action);
@@ -109,10 +113,10 @@ class Episode {
 
   World world_;
   EpisodeOptions options_;
-  Task asked_;  // in the world's numbers
-  Task task_;   // the same on what is known
+  Task asked_;                           // in the world's numbers
+  Task task_;                            // the same on what is known
   std::shared_ptr<HiddenWorld> hidden_;  // null where the map is known
-  const KnownGrid* grid_;  // of directions; else null
+  const KnownGrid* grid_;                // of directions; else null
   std::int64_t most_free_moves_;
   NodeId position_ = kNoNode;
   std::vector<std::uint32_t> visits_;  // [N]

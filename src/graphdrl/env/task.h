@@ -87,8 +87,8 @@ class Task {
   // REQUIRES: the end can be reached for the budget.
   Task rest(NodeId position, double budget, NodeSet visited) const;
 
-  // The same budget in a world of which only this is known, and grows. end: kNoNode: anywhere. costs_to_end: [N], kept up
-  // to date as more becomes known; null where it may end anywhere.
+  // The same budget in a world of which only this is known, and grows. end: kNoNode: anywhere. costs_to_end: [N], kept
+  // up to date as more becomes known; null where it may end anywhere.
   Task on(View known, NodeId start, NodeId end, std::shared_ptr<const std::vector<double>> costs_to_end) const;
 
   // The same, but these nodes are worth nothing: others have claimed them. They are no ground of ours by that.

@@ -33,8 +33,21 @@ class KnownGrid {
   mutable Graph graph_;
 };
 
-// Of a known map it is immutable once it is made [make_known()]: any number of threads may read it. Of an unknown one it
-// grows [Discovery], between the moves of the one walk that explores it: nodes are numbered in the order of their
+// What has been seen of an unknown map, added up over the nodes whose edges are all known.
+struct Census {
+  int nodes = 0;
+  double degrees = 0;          // sum, whichever way edges lead
+  double squared_degrees = 0;  // sum
+  double met = 0;              // neighbours counted before, the sum
+  int meetings = 0;            // nodes with two of them and more
+  int low = 0;                 // nodes of a degree of two at most
+  int dead_ends = 0;           // nodes that showed none for the first time
+  double pairs = 0;            // of neighbours counted before, the first few of each node …
+  double closed_pairs = 0;     // … and those joined by an edge
+};
+
+// Of a known map it is immutable once it is made [make_known()]: any number of threads may read it. Of an unknown one
+// it grows [Discovery], between the moves of the one walk that explores it: nodes are numbered in the order of their
 // discovery and keep their numbers, so that vectors by node only grow.
 struct Known {
   std::string name;                 // for messages
@@ -45,8 +58,11 @@ struct Known {
   std::shared_ptr<const KnownGrid> grid = {};  // null where there are no cells
 
   // Of an unknown map; empty of a known one:
-  std::vector<bool> frontier = {};          // [N], nodes whose edges may not all be known
-  std::vector<std::uint32_t> seen_at = {};  // [N], the version in which the node was last seen: its visits, counted
+  std::vector<bool> frontier = {};             // [N], nodes whose edges may not all be known
+  std::vector<std::uint32_t> first_seen = {};  // [N], the version in which the node was first seen: visits, counted
+  std::vector<std::uint32_t> seen_at = {};     // [N], likewise last
+  int frontier_count = 0;
+  Census census = {};
   // Frontier nodes in the order in which they were last seen. Some may stand there earlier, too, and some are no
   // frontier any more, but the last is.
   std::vector<NodeId> recent = {};
@@ -82,6 +98,9 @@ class View {
   bool is_frontier(NodeId node) const { return grows() && known_->frontier[node]; }
   // When a node was last seen; later is more. REQUIRES: grows().
   std::uint32_t seen_at(NodeId node) const { return known_->seen_at[node]; }
+  std::uint32_t first_seen(NodeId node) const { return known_->first_seen[node]; }
+  int frontier_count() const { return known_->frontier_count; }
+  const Census& census() const { return known_->census; }
   // As Known's.
   bool ordered() const { return known_->ordered; }
   std::span<const NodeId> recent() const { return known_->recent; }

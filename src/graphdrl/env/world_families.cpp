@@ -22,7 +22,7 @@ constexpr double kMaxBlocked = 0.9;
 constexpr int kMostCost = 5;
 constexpr double kOneWayShare = 0.3;
 
-constexpr std::array<WorldFamily, 23> kFamilies = {{
+constexpr std::array<WorldFamily, 24> kFamilies = {{
     {"obstacles", true, "each cell an obstacle with a probability from 0.1 to 0.4, half the cells free at least"},
     {"maze", true, "perfect mazes, corridors one cell wide; odd sides"},
     {"loop-maze", true, "mazes, each inner wall between two rooms opened with a probability from 0.05 to 0.2"},
@@ -38,6 +38,7 @@ constexpr std::array<WorldFamily, 23> kFamilies = {{
     {"tree", false, "drawn uniformly from all trees"},
     {"erdos-renyi", false, "mean degree from 2.5 to 4, the largest part"},
     {"barabasi-albert", false, "each node joins by 1 or 2 edges"},
+    {"barabasi-albert-dense", false, "the same by 3 to 5 edges"},
     {"watts-strogatz", false, "a ring of degree 4, 0.1 to 0.3 of the edges led elsewhere, the largest part"},
     {"geometric", false, "mean degree from 4 to 7, the largest part; costs are lengths where there are any"},
     {"power-law-cluster", false, "each node joins by 2 to 4 edges, 0.4 to 0.9 of the further ones close triangles"},
@@ -111,6 +112,7 @@ Graph graph_of(const WorldSpec& spec, Rng& rng) {
   if (spec.family == "tree") return random_tree(nodes, rng);
   if (spec.family == "erdos-renyi") return largest_part(erdos_renyi_graph(nodes, draw(2.5, 4, rng), rng));
   if (spec.family == "barabasi-albert") return barabasi_albert_graph(nodes, 1 + rng.index(2), rng);
+  if (spec.family == "barabasi-albert-dense") return barabasi_albert_graph(nodes, draw_int(3, 5, rng), rng);
   if (spec.family == "watts-strogatz") {
     return largest_part(watts_strogatz_graph(nodes, 2, draw(0.1, 0.3, rng), rng));
   }

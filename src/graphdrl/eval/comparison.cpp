@@ -64,9 +64,9 @@ std::vector<Contender> make_contenders(const ComparisonOptions& options) {
 // A world with what all policies share on it.
 struct Arena {
   World world;
-  Task task;                      // of any of the starts
-  std::vector<NodeId> starts;     // one per episode
-  std::optional<double> optimum;  // percent
+  Task task;                       // of any of the starts
+  std::vector<NodeId> starts;      // one per episode
+  std::optional<double> optimum;   // percent
   std::vector<double> known = {};  // percents of walks that know the map, by episode; empty unless asked for
 };
 
@@ -241,7 +241,7 @@ std::vector<FamilyRow> summarise_families(std::span<const ComparisonRow> rows,
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (families[i] == name && rows[i].coverage) maps.push_back(&rows[i]);
     }
-    const auto over = [&](std::optional<Summary> ComparisonRow::* what) -> std::optional<Summary> {
+    const auto over = [&](std::optional<Summary> ComparisonRow::*what) -> std::optional<Summary> {
       if (maps.empty() || !(maps.front()->*what)) return std::nullopt;
       if (maps.size() == 1) return maps.front()->*what;
       std::vector<double> means;

@@ -118,10 +118,12 @@ std::string ends_of(const Comparison& comparison) {
 
 std::string format_comparison(const Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
-  std::string text = fmt::format("{}{}, budget {}, {}{}\n\n", what_is_measured(comparison.rows),
-                                 options.reveal.all() ? "" : fmt::format(", nodes {}, of unknown maps that reveal {}",
-                                 options.score == Score::kSeen ? "seen" : "visited", options.reveal.text()),
-                                 budgets_of(comparison), starts_of(comparison), ends_of(comparison));
+  std::string text = fmt::format(
+      "{}{}, budget {}, {}{}\n\n", what_is_measured(comparison.rows),
+      options.reveal.all() ? ""
+                           : fmt::format(", nodes {}, of unknown maps that reveal {}",
+                                         options.score == Score::kSeen ? "seen" : "visited", options.reveal.text()),
+      budgets_of(comparison), starts_of(comparison), ends_of(comparison));
   std::size_t name_width = 11;
   for (const ComparisonRow& row : comparison.rows) {
     name_width = std::max({name_width, row.map.size(), row.policy.size()});

@@ -20,7 +20,8 @@ struct RolloutResult {
 int block_size(const World& world);
 
 // One episode like `episode` per start, side by side, each until it is done, the policy stops or the clock passes.
-// places: of the starts among all episodes, 0, 1, 2 … where there are none: the numbers of unknown nodes depend on them.
+// places: of the starts among all episodes, 0, 1, 2 … where there are none: the numbers of unknown nodes depend on
+// them.
 std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const NodeId> starts, Policy& policy,
                                     const Clock& clock = {}, std::span<const int> places = {});
 
@@ -30,8 +31,8 @@ struct Discovered {
   std::vector<int> after_step;  // [steps + 1], how many of them were seen by then
 };
 
-// Lets a policy that chooses step by step walk one episode, and takes that for its plan, up to the last gain where it may
-// end anywhere. Once the clock passes, goes straight to where it must end. options: budget and end are the task's.
+// Lets a policy that chooses step by step walk one episode, and takes that for its plan, up to the last gain where it
+// may end anywhere. Once the clock passes, goes straight to where it must end. options: budget and end are the task's.
 // think_s: seconds for a choice. discovered: of an unknown world, how it became known.
 Plan plan_by_steps(const World& world, const Task& task, const EpisodeOptions& options, Policy& policy,
                    const Clock& clock = {}, double think_s = kNoLimit, Discovered* discovered = nullptr);

@@ -144,9 +144,9 @@ class Graph {
   void settle_costs(const CostSum& all);
 
   EdgeKind kind_ = EdgeKind::kUndirected;
-  std::vector<List> lists_;                      // [N]; of a complete graph each reaches far into the next
-  std::vector<NodeId> neighbours_;               // [2E], or [E] of a directed graph; [2N] of a complete one; more if it grew
-  std::int64_t arc_count_ = 0;                   // edges, undirected ones twice
+  std::vector<List> lists_;         // [N]; of a complete graph each reaches far into the next
+  std::vector<NodeId> neighbours_;  // [2E], or [E] of a directed graph; [2N] of a complete one; more if it grew
+  std::int64_t arc_count_ = 0;      // edges, undirected ones twice
   std::shared_ptr<const PairCosts> pair_costs_;  // of a complete graph
   std::vector<double> costs_;                    // as neighbours_; empty where every edge costs 1
   double cost_sum_ = 0;                          // of arcs, where edges have costs

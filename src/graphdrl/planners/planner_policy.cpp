@@ -40,8 +40,8 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
   const Task& whole = *observation.task;
   const bool whole_walk = observation.walk.size() == 1 && !whole.view().grows();
   const Task task = whole_walk ? whole
-                             : whole.rest(observation.position, std::max(0.0, whole.budget() - observation.spent),
-                                          observation.ground());
+                               : whole.rest(observation.position, std::max(0.0, whole.budget() - observation.spent),
+                                            observation.ground());
   const auto older = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
     return plan.task.view() == whole.view() && plan.leads_on(observation);
   });
@@ -68,8 +68,7 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
 int PlannerPolicy::act_on(const Observation& observation, const Clock& clock) {
   const auto known = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
     return plan.task.view() == observation.view() && plan.version == observation.view().version() &&
-           plan.leads_on(observation) &&
-           plan.task.has_sets_of(*observation.task);
+           plan.leads_on(observation) && plan.task.has_sets_of(*observation.task);
   });
   const std::span<const NodeId> rest =
       (known != plans_.end() ? *known : plan_anew(observation, clock)).rest(observation);

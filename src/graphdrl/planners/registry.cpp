@@ -26,17 +26,17 @@ struct PolicyName {
 };
 
 constexpr std::array<PolicyName, 12> kNames = {{{"search", PolicyKind::kSearch, "[:ITERATIONS]"},
-                                               {"beam", PolicyKind::kBeam, "[:W]"},
-                                               {"guided", PolicyKind::kGuided, "[:W[:FILE]]"},
-                                               {"dfs", PolicyKind::kDepthFirst},
-                                               {"exact", PolicyKind::kExact},
-                                               {"explorer", PolicyKind::kExplorer},
-                                               {"frontier", PolicyKind::kFrontier},
-                                               {"nearest", PolicyKind::kNearest},
-                                               {"open", PolicyKind::kOpen},
-                                               {"pocket", PolicyKind::kPocket},
-                                               {"random", PolicyKind::kRandom},
-                                               {"random-walk", PolicyKind::kRandomWalk}}};
+                                                {"beam", PolicyKind::kBeam, "[:W]"},
+                                                {"guided", PolicyKind::kGuided, "[:W[:FILE]]"},
+                                                {"dfs", PolicyKind::kDepthFirst},
+                                                {"exact", PolicyKind::kExact},
+                                                {"explorer", PolicyKind::kExplorer},
+                                                {"frontier", PolicyKind::kFrontier},
+                                                {"nearest", PolicyKind::kNearest},
+                                                {"open", PolicyKind::kOpen},
+                                                {"pocket", PolicyKind::kPocket},
+                                                {"random", PolicyKind::kRandom},
+                                                {"random-walk", PolicyKind::kRandomWalk}}};
 
 // A whole number from 1 to `most`; empty where the text is none.
 std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t most) {
@@ -154,6 +154,9 @@ std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) 
   }
   if (const auto rule = rule_of(spec.kind)) return std::make_unique<RulePolicy>(*rule);
   if (auto planner = make_planner(spec, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
+  if (const auto* const online = std::get_if<SharedOnlineExplorer>(&spec.trained)) {
+    return std::make_unique<OnlineExplorerPolicy>(*online);
+  }
   return std::make_unique<PaperPolicy>(std::get<PaperParameters>(spec.trained));
 }
 
@@ -167,10 +170,17 @@ TrainedPolicy read_policy(const std::string& name) {
   if (name == "explorer") return builtin_explorer();
   const Safetensors file = Safetensors::read(name);
   const auto description = policy_description(file);
-  if (description.is_object() && description.value("kind", nlohmann::json()) == "explorer") {
-    return std::make_shared<const ExplorerParameters>(read_explorer(file));
-  }
+  const auto kind = description.is_object() ? description.value("kind", nlohmann::json()) : nlohmann::json();
+  if (kind == "explorer") return std::make_shared<const ExplorerParameters>(read_explorer(file));
+  if (kind == "online_explorer") return std::make_shared<const OnlineParameters>(read_online_explorer(file));
   return read_policy_file(name);
+}
+
+KnownMapPolicy read_known_map_policy(const std::string& name) {
+  TrainedPolicy policy = read_policy(name);
+  if (auto* const explorer = std::get_if<SharedExplorer>(&policy)) return *explorer;
+  if (auto* const paper = std::get_if<PaperParameters>(&policy)) return std::move(*paper);
+  throw Error({.what = "this policy explores maps that are not known", .where = name});
 }
 
 std::string policy_names() {

@@ -10,6 +10,7 @@
 #include "graphdrl/nn/paper_network.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/explorer.h"
+#include "graphdrl/planners/online_explorer.h"
 #include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
@@ -27,12 +28,15 @@ enum class PolicyKind {
   kExplorer,
   kSearch,
   kExact,
-  kFile,  // an explorer, or a network of the paper
+  kFile,  // an explorer, an online explorer, or a network of the paper
 };
 
 // A trained network: that of a file, or `explorer`, the one in the program. Throws Error where there is none.
-using TrainedPolicy = std::variant<SharedExplorer, PaperParameters>;
+using TrainedPolicy = std::variant<SharedExplorer, PaperParameters, SharedOnlineExplorer>;
 TrainedPolicy read_policy(const std::string& name);
+// The same of networks that look at maps that are known. Throws Error on an online explorer, too.
+using KnownMapPolicy = std::variant<SharedExplorer, PaperParameters>;
+KnownMapPolicy read_known_map_policy(const std::string& name);
 
 // A policy's name, taken apart.
 struct PolicySpec {
@@ -43,8 +47,9 @@ struct PolicySpec {
   std::string label = {};           // in tables: the name given, a file's stem
 };
 
-// `random`, `random-walk`, `dfs`, `nearest`, `pocket`, `open`, `frontier`, `beam[:W]`, `guided[:W[:FILE]]`, `explorer`, `search[:ITERATIONS]`,
-// `exact`, or a policy file, which is read here. Throws Error on any other name, and on a file that holds no policy.
+// `random`, `random-walk`, `dfs`, `nearest`, `pocket`, `open`, `frontier`, `beam[:W]`, `guided[:W[:FILE]]`, `explorer`,
+// `search[:ITERATIONS]`, `exact`, or a policy file, which is read here. Throws Error on any other name, and on a file
+// that holds no policy.
 PolicySpec parse_policy(const std::string& name);
 
 // Whether it plans whole walks.

@@ -10,15 +10,14 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::size_t kMostTrips = 64;       // as many as the episodes of a block in eval/rollout
-constexpr double kAsNear = 1 + 1e-9;         // distances that differ by rounding alone
-constexpr double kDistanceWeight = 3;        // explore_lite's potential_scale, its default
-constexpr double kSizeWeight = 1;            // its gain_scale
+constexpr std::size_t kMostTrips = 64;  // as many as the episodes of a block in eval/rollout
+constexpr double kAsNear = 1 + 1e-9;    // distances that differ by rounding alone
+constexpr double kDistanceWeight = 3;   // explore_lite's potential_scale, its default
+constexpr double kSizeWeight = 1;       // its gain_scale
 
 int visited_neighbours(const Exploration& now, NodeId node) {
   const auto neighbours = now.view().into().neighbours(node);
-  return static_cast<int>(
-      std::ranges::count_if(neighbours, [&](NodeId next) { return now.ground().contains(next); }));
+  return static_cast<int>(std::ranges::count_if(neighbours, [&](NodeId next) { return now.ground().contains(next); }));
 }
 
 std::uint32_t seen_at(const View& view, NodeId node) {
@@ -60,15 +59,15 @@ bool always(double /*cost*/) {
 
 }  // namespace
 
-void RulePolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
+void FirstVisitPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
   for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i]);
 }
 
-int RulePolicy::act_on(const Observation& now) {
+int FirstVisitPolicy::act_on(const Observation& now) {
   auto trip = std::ranges::find(trips_, now.walk_hash, &Trip::hash);
   if (trip == trips_.end() || trip->way.empty() || trip->version != now.view().version()) {
     const Exploration exploration(now, now.ground());
-    NodeId goal = choose(exploration, now.walk_hash);
+    NodeId goal = choose(exploration, now);
     if (goal == kNoNode) {
       const NodeId end = now.task->end();
       if (end == kNoNode || end == now.position) return kStop;
@@ -90,15 +89,15 @@ int RulePolicy::act_on(const Observation& now) {
   trip->way.pop_back();
   trip->hash = extended_walk_hash(now.walk_hash, next);
   const int action = now.action_to(next);
-  if (action == kNoAction || !now.affordable(action)) throw std::logic_error("a rule takes a step that cannot be taken");
+  if (action == kNoAction || !now.affordable(action))
+    throw std::logic_error("a policy takes a step that cannot be taken");
   return action;
 }
 
-// The way there is that of the last search.
-NodeId RulePolicy::choose(const Exploration& now, std::uint64_t walk_hash) {
+NodeId RulePolicy::choose(const Exploration& now, const Observation& observation) {
   switch (rule_) {
     case Rule::kDepthFirst:
-      return choose_last_seen(now, walk_hash);
+      return choose_last_seen(now, observation.walk_hash);
     case Rule::kFrontier:
       return choose_by_frontier(now);
     case Rule::kNearest:
@@ -106,7 +105,7 @@ NodeId RulePolicy::choose(const Exploration& now, std::uint64_t walk_hash) {
     case Rule::kOpen:
       break;
   }
-  return choose_nearest(now, walk_hash);
+  return choose_nearest(now, observation.walk_hash);
 }
 
 NodeId RulePolicy::choose_nearest(const Exploration& now, std::uint64_t walk_hash) {
@@ -123,7 +122,7 @@ NodeId RulePolicy::choose_nearest(const Exploration& now, std::uint64_t walk_has
     best.offer(node, {visited_neighbours(now, node) * (rule_ == Rule::kOpen ? -1 : 1), seen_at(now.view(), node)});
     return true;
   };
-  now.for_first_visits(search_, look_at, always);
+  now.for_first_visits(search(), look_at, always);
   return best.node();
 }
 
@@ -141,7 +140,7 @@ NodeId RulePolicy::choose_last_seen(const Exploration& now, std::uint64_t walk_h
     best.offer(node, {seen_at(view, node), -cost});
     return !view.ordered() || best.rank().first != last;
   };
-  now.for_first_visits(search_, look_at, always);
+  now.for_first_visits(search(), look_at, always);
   return best.node();
 }
 
@@ -150,7 +149,7 @@ NodeId RulePolicy::choose_by_frontier(const Exploration& now) {
   std::vector<FirstVisit> visits;
   std::unordered_map<NodeId, int> place_of;
   now.for_first_visits(
-      search_,
+      search(),
       [&](NodeId node, double cost) {
         place_of.emplace(node, static_cast<int>(visits.size()));
         visits.push_back({node, cost});

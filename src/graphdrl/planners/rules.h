@@ -1,4 +1,4 @@
-// Rules that choose the next node to visit by what is known around: nearest, depth first, and their kin.
+// Policies that choose the next node to visit by what is known around: nearest, depth first, and their kin.
 #pragma once
 
 #include <vector>
@@ -9,24 +9,17 @@
 
 namespace graphdrl {
 
-enum class Rule {
-  kNearest,     // the nearest first visit
-  kDepthFirst,  // the one seen last; of those seen at once the nearest
-  kPocket,      // nearest; of equally near ones the one with most neighbours visited, then the one seen last
-  kOpen,        // nearest; of equally near ones the one with fewest, then the one seen last
-  kFrontier,    // three times the distance less the size of the frontier around it, least first [explore_lite]
-};
-
 // Goes to one first visit after the other, each by the cheapest way through ground; then to where the walk must end.
 // Chooses anew once more is known. On an unknown map first visits lead to what was seen and not visited, or on known
-// ways to the frontier where what is seen counts. On a known map nothing was seen last. Ties go to the first one that
-// the search meets; where the order of neighbours means nothing [View::ordered()], to any of them, by the walk's hash.
-//
-// A choice costs what is nearer than its choice; of kFrontier the whole frontier.
-class RulePolicy final : public Policy {
+// ways to the frontier where what is seen counts.
+class FirstVisitPolicy : public Policy {
  public:
-  explicit RulePolicy(Rule rule) : rule_(rule) {}
-  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
+  void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) final;
+
+ protected:
+  // The first visit to make; kNoNode for none. The way there must be the one that search() met last.
+  virtual NodeId choose(const Exploration& now, const Observation& observation) = 0;
+  NearestFirst& search() { return search_; }
 
  private:
   // Under way to what was chosen.
@@ -37,15 +30,35 @@ class RulePolicy final : public Policy {
   };
 
   int act_on(const Observation& now);
-  NodeId choose(const Exploration& now, std::uint64_t walk_hash);
+
+  NearestFirst search_;
+  std::vector<Trip> trips_;  // the last ones, kMostTrips at most
+  std::size_t oldest_ = 0;
+};
+
+enum class Rule {
+  kNearest,     // the nearest first visit
+  kDepthFirst,  // the one seen last; of those seen at once the nearest
+  kPocket,      // nearest; of equally near ones the one with most neighbours visited, then the one seen last
+  kOpen,        // nearest; of equally near ones the one with fewest, then the one seen last
+  kFrontier,    // three times the distance less the size of the frontier around it, least first [explore_lite]
+};
+
+// On a known map nothing was seen last. Ties go to the first one that the search meets; where the order of neighbours
+// means nothing [View::ordered()], to any of them, by the walk's hash.
+//
+// A choice costs what is nearer than its choice; of kFrontier the whole frontier.
+class RulePolicy final : public FirstVisitPolicy {
+ public:
+  explicit RulePolicy(Rule rule) : rule_(rule) {}
+
+ private:
+  NodeId choose(const Exploration& now, const Observation& observation) override;
   NodeId choose_nearest(const Exploration& now, std::uint64_t walk_hash);
   NodeId choose_last_seen(const Exploration& now, std::uint64_t walk_hash);
   NodeId choose_by_frontier(const Exploration& now);
 
   Rule rule_;
-  NearestFirst search_;
-  std::vector<Trip> trips_;  // the last ones, kMostTrips at most
-  std::size_t oldest_ = 0;
 };
 
 }  // namespace graphdrl

@@ -48,7 +48,7 @@ MoveScores q_values_along(const Answer& answer, PaperPolicy policy) {
 }  // namespace
 
 MoveScores scores_along(const Answer& answer, const std::string& policy) {
-  TrainedPolicy trained = read_policy(policy);
+  KnownMapPolicy trained = read_known_map_policy(policy);
   if (auto* const explorer = std::get_if<SharedExplorer>(&trained)) return shortfalls_along(answer, *explorer);
   return q_values_along(answer, PaperPolicy(std::get<PaperParameters>(std::move(trained))));
 }

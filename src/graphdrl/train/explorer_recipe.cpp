@@ -1,23 +1,11 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
-#include "graphdrl/base/parallel.h"
 #include "graphdrl/train/explorer_learner.h"
 #include "graphdrl/train/explorer_replay.h"
-#include "graphdrl/train/recipe.h"
+#include "graphdrl/train/round_recipe.h"
 
 namespace graphdrl {
 namespace {
-
-constexpr std::uint64_t kWalkPurpose = 1;  // of derive_seed
-constexpr const char* kRoundKey = "round";
-constexpr double kLastRate = 0.02;  // of the first learning rate, as in docs/explorer.md, "Training"
 
 // Most are small: there the search's values are nearly exact, and several lessons cost as much as one of a large world.
 // Larger ones are worth 0.7 points on graphs of 200 nodes and cost grids up to 2 (docs/explorer.md, "What pays").
@@ -75,44 +63,20 @@ LessonOptions lesson_options(const TrainOptions& options) {
   return lessons;
 }
 
-class ExplorerRecipe final : public Recipe {
+class ExplorerRecipe final : public RoundRecipe {
  public:
   ExplorerRecipe(const TrainOptions& options, Rng& rng)
-      : options_(options),
+      : RoundRecipe(options),
         rng_(rng),
         lesson_options_(lesson_options(options)),
         learner_(options.ranking, rng_),
         replay_(static_cast<std::size_t>(options.replay_capacity)) {}
 
-  bool run_unit(TrainingProgress& progress, const std::function<bool()>& stop) override {
-    if (!updates_) {
-      auto drawn = draw(progress.done, stop);
-      if (!drawn) return false;
-      for (std::vector<Lesson>& of_walk : *drawn) {
-        progress.samples += std::ssize(of_walk);
-        for (Lesson& lesson : of_walk) replay_.push(std::move(lesson));
-      }
-      updates_ = 0;
-      loss_ = regret_ = 0;
-    }
-    if (!learn(progress.done, stop)) return false;
-    updates_.reset();
-    return true;
-  }
-
-  std::string status(const TrainingProgress& progress) const override {
-    return fmt::format("{} states  loss {:.4f}  regret {:.4f}", progress.samples, loss_, regret_);
-  }
-
-  std::vector<Metric> take_metrics(const TrainingProgress& progress) override {
-    return {{"states", static_cast<double>(progress.samples)}, {"loss", loss_}, {"regret", regret_}};
-  }
-
   void save(CheckpointWriter& checkpoint) const override {
     checkpoint.add("online.", learner_.parameters());
     checkpoint.add(learner_.adam());
     replay_.save(checkpoint);
-    if (updates_) checkpoint.add_json(kRoundKey, {{"updates", *updates_}, {"loss", loss_}, {"regret", regret_}});
+    save_round(checkpoint);
   }
 
   std::string not_finite() const override { return learner_.parameters().first_not_finite(); }
@@ -121,14 +85,7 @@ class ExplorerRecipe final : public Recipe {
     learner_.set_state(checkpoint.parameters<ExplorerParameters>("online."),
                        checkpoint.adam(trainable_count(ExplorerParameters::specs())));
     replay_.restore(checkpoint, lesson_options_);
-    if (static_cast<std::int64_t>(replay_.size()) != std::min(progress.samples, options_.replay_capacity)) {
-      checkpoint.fail("the checkpoint remembers another number of lessons than it has drawn");
-    }
-    if (!checkpoint.has_json(kRoundKey)) return;
-    const nlohmann::ordered_json round = checkpoint.json(kRoundKey);
-    checkpoint.read_number(round, "updates", updates_.emplace());
-    checkpoint.read_number(round, "loss", loss_);
-    checkpoint.read_number(round, "regret", regret_);
+    restore_round(checkpoint, static_cast<std::int64_t>(replay_.size()), progress);
   }
 
   void write_policy(const std::filesystem::path& path) const override {
@@ -136,56 +93,30 @@ class ExplorerRecipe final : public Recipe {
   }
 
  private:
-  // The lessons of a round's walks, which the network leads as it is now. The same for any number of threads. None
-  // where `stop` said so before the last.
-  std::optional<std::vector<std::vector<Lesson>>> draw(std::int64_t round, const std::function<bool()>& stop) const {
-    std::vector<std::vector<Lesson>> by_walk(static_cast<std::size_t>(options_.walks));
-    std::atomic<bool> stopped = false;
-    parallel_for(static_cast<int>(options_.walks), [&](int walk) {
-      if (stopped || stop()) {
-        stopped = true;
-        return;
-      }
-      const auto index = static_cast<std::uint64_t>(round * options_.walks + walk);
-      by_walk[walk] =
-          draw_lessons(lesson_options_, learner_.parameters(), derive_seed(options_.seed, kWalkPurpose, index));
-    });
-    if (stopped) return std::nullopt;
-    return by_walk;
+  // The lessons of a round's walks, which the network leads as it is now.
+  std::optional<std::int64_t> draw(std::int64_t round, const std::function<bool()>& stop) override {
+    auto drawn = draw_walks<Lesson>(
+        round, stop, [&](std::uint64_t seed) { return draw_lessons(lesson_options_, learner_.parameters(), seed); });
+    if (!drawn) return std::nullopt;
+    const std::int64_t count = std::ssize(*drawn);
+    for (Lesson& lesson : *drawn) replay_.push(std::move(lesson));
+    return count;
   }
 
-  // Takes a round's learning steps that are left, unless `stop` says so. The learning rate falls by a cosine from 1 to
-  // kLastRate of the first one over the whole training [Loshchilov and Hutter 2017].
-  bool learn(std::int64_t round, const std::function<bool()>& stop) {
-    std::vector<const Lesson*> picked(static_cast<std::size_t>(options_.batch_size));
-    const auto updates = static_cast<double>(options_.updates);
-    for (; *updates_ < options_.updates && replay_.size() > 0; ++*updates_) {
-      if (stop()) return false;
-      for (const Lesson*& lesson : picked) {
-        lesson = &replay_.lesson(rng_.below(static_cast<std::uint32_t>(replay_.size())));
-      }
-      const double done = (static_cast<double>(round) + static_cast<double>(*updates_) / updates) /
-                          static_cast<double>(options_.rounds);
-      const double rate_share = kLastRate + (1 - kLastRate) * (1 + std::cos(std::numbers::pi * done)) / 2;
-      const double loss = learner_.learn(picked, options_.learning_rate * rate_share);
-      if (!std::isfinite(loss)) {
-        throw NotFinite({.what = fmt::format("the loss is {} at step {} of round {}", loss, *updates_ + 1, round + 1)});
-      }
-      loss_ += loss / updates;
-      regret_ += learner_.regret() / updates;
+  std::optional<LearningStep> learn(double rate) override {
+    if (replay_.size() == 0) return std::nullopt;
+    std::vector<const Lesson*> picked(static_cast<std::size_t>(options().batch_size));
+    for (const Lesson*& lesson : picked) {
+      lesson = &replay_.lesson(rng_.below(static_cast<std::uint32_t>(replay_.size())));
     }
-    return true;
+    const double loss = learner_.learn(picked, rate);
+    return LearningStep{.loss = loss, .regret = learner_.regret()};
   }
 
-  TrainOptions options_;
   Rng& rng_;
   LessonOptions lesson_options_;
   ExplorerLearner learner_;
   ExplorerReplay replay_;
-  std::optional<std::int64_t> updates_;  // learning steps of the round under way; none before its walks are drawn
-  // Of the round under way, or the last one.
-  double loss_ = 0;
-  double regret_ = 0;
 };
 
 }  // namespace

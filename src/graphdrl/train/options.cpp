@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 using O = TrainOptions;
 
 constexpr std::int64_t kMany = 1'000'000'000;
-constexpr std::string_view kAddedLater[] = {"precision", "on_nan"};  // runs of version 0.1.0 do not name them
+constexpr std::string_view kAddedLater[] = {"precision", "on_nan", "reveal"};  // runs of version 0.1.0 do not name them
 
 template <typename T>
 void check_range(const std::string& flag, T value, T low, T high) {
@@ -77,6 +77,9 @@ std::vector<AnyOptionField> shared_fields() {
 
 std::vector<AnyOptionField> explorer_fields() {
   return {
+      field("reveal", &O::reveal, one_of({"all", "edges"}),
+            "What the explorer knows of maps: all, or the edges of nodes visited; values are then what its own walks "
+            "bring"),
       field("rounds", &O::rounds, whole(1, kMany),
             "Rounds of walks and updates; the learning rate falls over all of them"),
       field(
@@ -171,6 +174,11 @@ void validate(const TrainOptions& options) {
   // The paper learns once there are more transitions than a batch has.
   const bool paper = options.preset == kPaperPreset;
   check_range("--replay-capacity", options.replay_capacity, options.batch_size + (paper ? 1 : 0), kMany);
+  if (options.reveal != "all") {
+    const TrainOptions usual;
+    const bool other = options.teacher_steps != usual.teacher_steps || options.ranking != usual.ranking;
+    if (other) throw Error({.what = "--teacher-steps and --ranking go with --reveal all", .got = options.reveal});
+  }
   if (!paper) return;
   if (options.punish_blocked_by_visits && options.reward != "visit_penalty") {
     throw Error({.what = "only the reward visit_penalty punishes anything", .where = "--punish-blocked-by-visits"});

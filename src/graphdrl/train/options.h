@@ -30,6 +30,7 @@ struct TrainOptions {
   std::string on_nan = "stop";
 
   // Of the explorer.
+  std::string reveal = "all";
   std::int64_t rounds = 240;
   std::int64_t largest = 26;
   std::int64_t teacher_steps = 2;

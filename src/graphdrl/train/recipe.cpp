@@ -11,7 +11,9 @@ TrainingUnits units_of(const TrainOptions& options) {
 
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
                                     const LearnerSource& learners, std::vector<World> worlds) {
-  if (options.preset == kExplorerPreset) return make_explorer_recipe(options, rng);
+  if (options.preset == kExplorerPreset) {
+    return options.reveal == "all" ? make_explorer_recipe(options, rng) : make_online_recipe(options, rng);
+  }
   if (from != nullptr) worlds = worlds_of(*from);
   if (worlds.empty()) worlds = load_worlds(options.maps);
   return make_paper_recipe(options, rng, std::move(worlds), learners);

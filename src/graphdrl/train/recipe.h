@@ -69,6 +69,7 @@ std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const
 // of learning steps on what is remembered. `stop` is asked before every walk and every learning step; a round whose
 // walks are not all drawn begins anew.
 std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng);
+std::unique_ptr<Recipe> make_online_recipe(const TrainOptions& options, Rng& rng);  // of maps that are not known
 
 // That of the preset paper (paper_recipe.cpp): Deep Q-learning over episodes on grid maps [paper, Algorithm 1]. A unit
 // is an episode; `stop` is asked before every step. Metrics are means over ten episodes, or fewer at the end; epsilon

@@ -1,0 +1,23 @@
+#include "graphdrl/planners/online_explorer.h"
+
+#include <algorithm>
+
+#include "graphdrl/base/error.h"
+
+namespace graphdrl {
+
+NodeId OnlineExplorerPolicy::choose(const Exploration& now, const Observation& observation) {
+  if (!now.view().grows()) {
+    throw Error({.what = "this policy explores maps that are not known",
+                 .expected = "graphdrl explore, or evaluate --reveal",
+                 .where = now.view().name()});
+  }
+  rows_.clear();
+  const auto visits = encode_online(now, observation.task->budget(), observation.spent, scratch_, search(), rows_);
+  if (visits.empty()) return kNoNode;
+  score_.resize(visits.size());
+  network_.forward(*parameters_, rows_, score_);
+  return visits[std::ranges::max_element(score_) - score_.begin()].node;
+}
+
+}  // namespace graphdrl

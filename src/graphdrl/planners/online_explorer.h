@@ -1,0 +1,29 @@
+// The online explorer: a network that explores unknown maps.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "graphdrl/nn/online_network.h"
+#include "graphdrl/planners/rules.h"
+
+namespace graphdrl {
+
+using SharedOnlineExplorer = std::shared_ptr<const OnlineParameters>;
+
+// Makes the first visit with the highest score. Throws Error on a map that is known.
+class OnlineExplorerPolicy final : public FirstVisitPolicy {
+ public:
+  explicit OnlineExplorerPolicy(SharedOnlineExplorer parameters) : parameters_(std::move(parameters)) {}
+
+ private:
+  NodeId choose(const Exploration& now, const Observation& observation) override;
+
+  SharedOnlineExplorer parameters_;
+  OnlineNetwork network_;
+  OnlineScratch scratch_;
+  std::vector<float> rows_;
+  std::vector<float> score_;
+};
+
+}  // namespace graphdrl
