@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "explored.h"
 #include "graphdrl/io/file.h"
 #include "support.h"
 
@@ -114,6 +115,36 @@ TEST_F(PlanFiles, AWalkOnOneLineIsReadWhole) {
   EXPECT_EQ(format_walk(world, std::vector<NodeId>{0, 1}), "node\n0\n1\n");
   // Either of two walks, or one and something beside it.
   EXPECT_THAT(error_of([&] { read("0 1 2\n1 2 5\n"); }), HasSubstr("walk:1: several words a line"));
+}
+
+TEST_F(PlanFiles, WhatAWalkHasSeenIsReadBack) {
+  const World world = labelled_world();
+  const Answer answer = explored(world, "radius:1.5", {0, 1});
+  EXPECT_THAT(answer.discovered.after_step, ElementsAre(2, 3));
+  written(answer, "a.json");
+  const Answer read = read_plan(world, (folder_ / "a.json").string());
+  EXPECT_EQ(read.reveal.text(), "radius:1.5");
+  EXPECT_EQ(read.score, Score::kVisited);
+  EXPECT_EQ(read.discovered.nodes, answer.discovered.nodes);
+  EXPECT_EQ(read.discovered.after_step, answer.discovered.after_step);
+
+  const auto discovery = [&](const std::string& reveal, const std::string& nodes, const std::string& counts) {
+    return parse_plan(world,
+                      fmt::format(R"({{"walk": [0, 1], "reveal": {}, "score": "seen", "seen_nodes": {}, )"
+                                  R"("seen_after_step": {}}})",
+                                  reveal, nodes, counts),
+                      "walk");
+  };
+  EXPECT_EQ(discovery("\"edges\"", "[0, 1, 2]", "[2, 3]").score, Score::kSeen);
+  EXPECT_THAT(error_of([&] { discovery("\"far\"", "[0, 1]", "[2, 2]"); }), HasSubstr("walk: bad reveal"));
+  EXPECT_THAT(error_of([&] { discovery("\"edges\"", "3", "[2, 2]"); }), HasSubstr("walk: bad seen_nodes"));
+  EXPECT_THAT(error_of([&] { discovery("\"edges\"", "[0, 0]", "[2, 2]"); }), HasSubstr("each node once"));
+  EXPECT_THAT(error_of([&] { discovery("\"edges\"", "[0, 9]", "[2, 2]"); }), HasSubstr("walk: seen_nodes outside"));
+  for (const char* const counts : {"[2]", "[2, 1]", "[2, 3]", "[0, 2]", "[2, \"2\"]"}) {
+    EXPECT_THAT(error_of([&] { discovery("\"edges\"", "[0, 1]", counts); }), HasSubstr("walk: bad seen_after_step"))
+        << counts;
+  }
+  EXPECT_TRUE(parse_plan(world, R"({"walk": [0], "reveal": "edges"})", "walk").reveal.all()) << "the rest is missing";
 }
 
 TEST(ReadPlan, TellsNodesFromComments) {

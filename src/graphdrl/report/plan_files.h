@@ -34,9 +34,9 @@ std::string plan_file_endings();
 // A plan from a file: the document above, an array of node ids, or lines. Lines have a node each: the first field of
 // CSV or, below a header, the column `node`, `id` or `label`; a single line without a header has the whole walk. Nodes
 // are named as for parse_node(). Budget and end are what is asked, else what the document says, else what the walk
-// costs and anywhere; policy and bound what the document says, else the file's name and none. Throws Error, naming the
-// file and the line, also where a step follows no edge, and where several lines of several words leave open which of
-// them are nodes.
+// costs and anywhere; policy, bound and what was seen what the document says, else the file's name, none and the whole
+// map. Throws Error, naming the file and the line, also where a step follows no edge, and where several lines of
+// several words leave open which of them are nodes.
 Answer read_plan(const World& world, const std::string& file, const Asked& asked = {});
 
 // The same for a text; `file` is for error messages.

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 
 #include "graphdrl/base/error.h"
@@ -140,6 +141,40 @@ void read_claims(const World& world, const nlohmann::json& document, Answer& ans
   answer.plan.optimal = document.value("optimal", nlohmann::json()) == true;
 }
 
+// What it says of a map that was not known beforehand, if it does.
+void read_discovery(const World& world, const nlohmann::json& document, const std::string& file, Answer& answer) {
+  const auto reveal = document.find("reveal");
+  const auto nodes = document.find("seen_nodes");
+  const auto counts = document.find("seen_after_step");
+  if (reveal == document.end() || nodes == document.end() || counts == document.end()) return;
+  const auto numbers = [&](const nlohmann::json& list, const std::string& key) {
+    const bool good = list.is_array() && std::ranges::all_of(list, &nlohmann::json::is_number_integer);
+    if (good) return list.get<std::vector<std::int64_t>>();
+    throw Error({.what = "bad " + key, .expected = "whole numbers", .got = shortened(list), .where = file});
+  };
+  for (const std::int64_t node : numbers(*nodes, "seen_nodes")) {
+    answer.discovered.nodes.push_back(checked_node(world, node, file + ": seen_nodes"));
+  }
+  if (const auto& list = answer.discovered.nodes; std::ssize(std::set(list.begin(), list.end())) != std::ssize(list)) {
+    throw Error({.what = "bad seen_nodes", .expected = "each node once", .got = shortened(*nodes), .where = file});
+  }
+  const std::vector<std::int64_t> after_step = numbers(*counts, "seen_after_step");
+  if (std::ssize(after_step) != std::ssize(answer.plan.walk) || !std::ranges::is_sorted(after_step) ||
+      after_step.front() < 1 || after_step.back() != std::ssize(answer.discovered.nodes)) {
+    throw Error({.what = "bad seen_after_step",
+                 .expected = "for each node of the walk, how many of seen_nodes were seen by then",
+                 .got = shortened(*counts),
+                 .where = file});
+  }
+  answer.discovered.after_step.assign(after_step.begin(), after_step.end());
+  try {
+    answer.reveal = Reveal::parse(reveal->is_string() ? reveal->get<std::string>() : "");
+  } catch (const Error& error) {
+    throw Error({.what = error.what(), .where = file});
+  }
+  if (document.value("score", nlohmann::json()) == "seen") answer.score = Score::kSeen;
+}
+
 }  // namespace
 
 Answer read_plan(const World& world, const std::string& file, const Asked& asked) {
@@ -165,7 +200,10 @@ Answer parse_plan(const World& world, const std::string& text, const std::string
     }
   };
   Answer answer{.world = world, .task = task(), .policy = file, .plan = std::move(plan)};
-  if (document.is_object()) read_claims(world, document, answer);
+  if (document.is_object()) {
+    read_claims(world, document, answer);
+    read_discovery(world, document, file, answer);
+  }
   return answer;
 }
 
