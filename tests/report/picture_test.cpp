@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "explored.h"
 #include "graphdrl/io/picture.h"
 #include "graphdrl/report/layout.h"
 #include "support.h"
@@ -80,6 +81,41 @@ TEST(Picture, OfManyCellsIsOneBitmap) {
   const std::string svg = Picture(world, std::vector<NodeId>{0, 1}, "a", {}).svg();
   EXPECT_EQ(count(svg, "<image "), 1);
   EXPECT_LT(svg.size(), 8'000u);
+}
+
+// A walk over three cells of a row, which sees a column on and the row below.
+TEST(Picture, HasFogOverWhatAWalkThatExploresHasNotSeen) {
+  const World world = grid_world(".....\n.....\n");
+  const std::vector<NodeId> walk = {0, 1, 2};
+  const Picture picture(world, walk, "a", {}, Fog(explored(world, "edges", walk)));
+  const std::string svg = picture.svg();
+  const std::string unseen = R"(<g fill="#f6f7f9" stroke="#e0e4e9" stroke-width="1.5">)";
+  const std::size_t begin = svg.find(unseen);
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_EQ(count(svg.substr(begin, svg.find("</g>", begin) - begin), "<circle "), 3) << "nodes 4, 8 and 9";
+  EXPECT_THAT(svg, HasSubstr(">not seen</text>"));
+  EXPECT_THAT(svg, HasSubstr(">not visited</text>"));
+  EXPECT_EQ(count(svg, "fade"), 0);
+  EXPECT_EQ(count(Picture(world, walk, "a", {}).svg(), "not seen"), 0);
+  // Two steps show more: edges and nodes each give way to others.
+  const std::string moving = picture.moving_svg();
+  EXPECT_EQ(count(moving, "class=\"fade\" opacity=\"0\""), 4);
+  EXPECT_EQ(count(moving, "class=\"fade\" opacity=\"1\""), 4);
+  EXPECT_THAT(moving, HasSubstr("@keyframes f0{0%,43.59%{opacity:1}45%,100%{opacity:0}}"));
+}
+
+TEST(Picture, OfManyCellsHasBarsOfFogThatLift) {
+  std::string map;
+  for (int row = 0; row < 40; ++row) map += std::string(50, '.') + "\n";
+  const World world = grid_world(map);
+  const std::vector<NodeId> walk = {0, 1, 2};
+  const Picture picture(world, walk, "a", {}, Fog(explored(world, "edges", walk)));
+  EXPECT_EQ(count(picture.svg(), "<path "), 0);
+  const std::string moving = picture.moving_svg();
+  EXPECT_EQ(count(moving, "<path stroke=\"#cbd1da\""), 2);
+  EXPECT_THAT(moving, HasSubstr("d=\"M64 40L84 40M44 60L64 60\"")) << "nodes 2 and 51, at step 1";
+  const Bitmap pixels = picture.pixels();
+  EXPECT_EQ(pixels.pixels[pixels.width * 100 + 100], (Colour{203, 209, 218}));
 }
 
 TEST(Picture, IsDrawnAsPng) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "explored.h"
 #include "support.h"
 
 namespace graphdrl {
@@ -83,6 +84,31 @@ TEST(DrawWalk, ChangesColoursOnlyWhereTheyDiffer) {
   const World wide = grid_world("....\n....\n##..\n##..\n");
   EXPECT_THAT(draw_walk(wide, std::vector<NodeId>{3}, {.columns = 2, .colour = true}),
               HasSubstr("\033[38;5;216;48;5;16m▀\033[38;5;16;48;5;231mS\033[0m\n"));
+}
+
+TEST(DrawWalk, LeavesBlankWhatAWalkThatExploresHasNotSeen) {
+  const World world = grid_world("....\n.##.\n....\n");
+  const std::vector<NodeId> walk = {1, 0};
+  const Fog fog(explored(world, "edges", walk));
+  EXPECT_EQ(draw_walk(world, walk, {.columns = 60}, fog),
+            "E S .\n"
+            ". # #\n"
+            "\n"
+            "S start, E end; arrows: the first way out of a cell\n"
+            ". not visited, # blocked, blank: not seen\n");
+  const std::string coloured = draw_walk(world, walk, {.colour = true}, fog);
+  EXPECT_THAT(coloured, HasSubstr("\n\033[38;5;16;48;5;145m        \033[0m\n"));
+  EXPECT_THAT(coloured, HasSubstr("grey: not seen"));
+}
+
+TEST(DrawWalk, ShadesTheShareVisitedOfWhatWasSeen) {
+  // Two by four cells a character. The third has two cells visited of four seen, the last has none seen.
+  const World world = grid_world("..........\n..........\n..........\n..........\n");
+  const std::vector<NodeId> walk = {0, 1, 2, 3, 4, 5, 6};
+  const std::string known = draw_walk(world, walk, {.columns = 5});
+  const std::string fogged = draw_walk(world, walk, {.columns = 5}, Fog(explored(world, "edges", walk)));
+  EXPECT_EQ(without_legend(known, 1), "S░░E.\n");
+  EXPECT_EQ(without_legend(fogged, 1), "S▒▒E\n");
 }
 
 TEST(ScreenOf, AFileHasTheColumnsOfTheEnvironmentAndNoColours) {

@@ -71,7 +71,7 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
   if (!world.has_cells()) return text;
   // The picture and the text above it fit the screen, with a line for the prompt.
   screen.lines -= static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 2;
-  text += '\n' + draw_walk(world, walk, screen);
+  text += '\n' + draw_walk(world, walk, screen, Fog(answer));
   return text;
 }
 

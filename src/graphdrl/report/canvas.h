@@ -51,6 +51,10 @@ class Canvas {
   // A part of the walk, between two shares of its time, at which a moving picture draws it.
   virtual void walk_part(std::span<const Point> points, Colour colour, double width, double begin, double end) = 0;
 
+  // What `draw` draws fades in, or out, between two shares of the walk's time. A still picture shows how it ends.
+  virtual void fade_in(double begin, double end, const std::function<void()>& draw) = 0;
+  virtual void fade_out(double begin, double end, const std::function<void()>& draw) = 0;
+
   // The bytes of the file.
   virtual std::string finish() = 0;
 };

@@ -19,7 +19,8 @@ constexpr double kTextSize = 13;
 constexpr double kLineHeight = 19;
 constexpr double kTitleHeight = 30;
 constexpr double kLeastWidth = 420;
-constexpr double kSide = 1000;  // of the map, in pixels, if its cells are not too large or too small for that
+constexpr double kLeastWidthInFog = 600;  // has more to say
+constexpr double kSide = 1000;            // of the map, in pixels, if its cells are not too large or too small for that
 
 constexpr int kFewCells = 200;  // drawn as nodes and edges
 constexpr double kFewCellsSpacing = 40;
@@ -41,6 +42,12 @@ constexpr Colour kVisited = {226, 232, 240};
 constexpr Colour kBlocked = {74, 81, 92};
 constexpr Colour kMissed = {250, 190, 140};
 constexpr Colour kMissedLine = {178, 84, 12};
+constexpr Colour kFog = {203, 209, 218};  // over cells
+constexpr Colour kBlockedInFog = {184, 191, 201};
+constexpr Colour kFaint = {246, 247, 249};  // nodes
+constexpr Colour kFaintLine = {224, 228, 233};
+constexpr Colour kFaintBlocked = {212, 217, 223};
+constexpr Colour kFaintText = {168, 176, 186};
 
 // Points in a direction. spread: of its back corners, from there.
 std::array<Point, 3> triangle(Point centre, double angle, double length, double spread) {
@@ -48,6 +55,30 @@ std::array<Point, 3> triangle(Point centre, double angle, double length, double 
     return Point{centre.x + length * std::cos(angle + turn), centre.y + length * std::sin(angle + turn)};
   };
   return {corner(0), corner(spread), corner(-spread)};
+}
+
+// What is drawn, by the part of the walk that shows it. First what is known from the beginning, last what never is.
+template <typename Item>
+using Parts = std::array<std::vector<Item>, kWalkParts + 2>;
+
+// The share of the walk's time at which a part begins. The first is number 1.
+double begin_of(int part) {
+  return (part - 1.0) / kWalkParts;
+}
+
+// draw(items, faint): draws some of them. What is faint lies below the rest.
+template <typename Item, typename Draw>
+void draw_parts(Canvas& canvas, const Parts<Item>& parts, const Draw& draw) {
+  draw(parts.back(), true);
+  for (int part = 1; part <= kWalkParts; ++part) {
+    if (parts[part].empty()) continue;
+    canvas.fade_out(begin_of(part), begin_of(part + 1), [&] { draw(parts[part], true); });
+  }
+  draw(parts.front(), false);
+  for (int part = 1; part <= kWalkParts; ++part) {
+    if (parts[part].empty()) continue;
+    canvas.fade_in(begin_of(part), begin_of(part + 1), [&] { draw(parts[part], false); });
+  }
 }
 
 }  // namespace
@@ -60,11 +91,13 @@ std::vector<int> first_visits(const World& world, std::span<const NodeId> walk) 
   return steps;
 }
 
-Picture::Picture(const World& world, std::span<const NodeId> walk, std::string title, std::vector<std::string> notes)
+Picture::Picture(const World& world, std::span<const NodeId> walk, std::string title, std::vector<std::string> notes,
+                 Fog fog)
     : world_(world),
       walk_(walk.begin(), walk.end()),
       title_(std::move(title)),
       notes_(std::move(notes)),
+      fog_(std::move(fog)),
       first_visits_(first_visits(world, walk)) {
   cells_ = world.has_cells() && world.node_count() > kFewCells;
   if (world.has_cells()) {
@@ -78,7 +111,7 @@ void Picture::place_cells() {
   const GridMap& map = *world_.map();
   const double size = std::floor(kSide / std::max(map.rows, map.cols));
   spacing_ = cells_ ? std::clamp(size, 1.0, kMostCellPixels) : kFewCellsSpacing;
-  width_ = std::max(kLeastWidth, 2 * kMargin + spacing_ * map.cols);
+  width_ = std::max(fog_.empty() ? kLeastWidth : kLeastWidthInFog, 2 * kMargin + spacing_ * map.cols);
   map_bottom_ = kTitleHeight + spacing_ * map.rows;
   const double left = (width_ - spacing_ * map.cols) / 2;
   places_.reserve(static_cast<std::size_t>(world_.node_count()));
@@ -100,7 +133,7 @@ void Picture::place_nodes() {
   const double inner = std::clamp(90 * std::sqrt(nodes), 320.0, kSide);
   const double scale = std::max(across, up) > 0 ? inner / std::max(across, up) : 1;
   const double padding = kMargin + 10;
-  width_ = std::ceil(std::max(kLeastWidth, 2 * padding + scale * across));
+  width_ = std::ceil(std::max(fog_.empty() ? kLeastWidth : kLeastWidthInFog, 2 * padding + scale * across));
   map_bottom_ = kTitleHeight + 2 * padding + scale * up;
   const double shift = (width_ - scale * across) / 2;
   for (const Point& point : points) {
@@ -161,6 +194,13 @@ Colour Picture::colour_at(std::size_t step) const {
   return colour_of_share(static_cast<double>(step) / static_cast<double>(last));
 }
 
+// Where draw_parts() looks for what becomes known at a step.
+std::size_t Picture::part_at(int step) const {
+  if (step < 0) return kWalkParts + 1;
+  const std::size_t steps = std::max<std::size_t>(1, walk_.size() - 1);
+  return (step * std::size_t{kWalkParts} + steps - 1) / steps;
+}
+
 void Picture::draw_cells(Canvas& canvas) const {
   const GridMap& map = *world_.map();
   std::array<Colour, 256> scale{};
@@ -169,6 +209,10 @@ void Picture::draw_cells(Canvas& canvas) const {
   bitmap.pixels.reserve(map.blocked.size());
   const double last = std::max<double>(1, static_cast<double>(walk_.size()) - 1);
   for (NodeId node = 0; node < world_.node_count(); ++node) {
+    if (fog_.lifts_at(node) < 0) {
+      bitmap.pixels.push_back(world_.is_blocked(node) ? kBlockedInFog : kFog);
+      continue;
+    }
     const int visited = first_visits_[node];
     const Colour by_step = scale[static_cast<std::size_t>(255 * std::max(visited, 0) / last)];
     bitmap.pixels.push_back(world_.is_blocked(node)  ? kBlocked
@@ -179,48 +223,88 @@ void Picture::draw_cells(Canvas& canvas) const {
   }
   const Point first = places_.front();
   canvas.bitmap(bitmap, {first.x - spacing_ / 2, first.y - spacing_ / 2}, spacing_ * map.cols);
+  if (!fog_.empty()) draw_fog_of_cells(canvas);
+}
+
+// A bar lies over each run of cells in a row until they are seen.
+void Picture::draw_fog_of_cells(Canvas& canvas) const {
+  Parts<Segment> free;
+  Parts<Segment> blocked;
+  const int cols = world_.map()->cols;
+  for (NodeId begin = 0, end = 0; begin < world_.node_count(); begin = end) {
+    const std::size_t part = part_at(fog_.lifts_at(begin));
+    const bool is_blocked = world_.is_blocked(begin);
+    for (end = begin + 1; end % cols != 0; ++end) {
+      if (part_at(fog_.lifts_at(end)) != part || world_.is_blocked(end) != is_blocked) break;
+    }
+    const Point from = places_[begin];
+    const Point to = places_[end - 1];
+    (is_blocked ? blocked : free)[part].push_back({{from.x - spacing_ / 2, from.y}, {to.x + spacing_ / 2, to.y}});
+  }
+  for (int part = 1; part <= kWalkParts; ++part) {
+    if (free[part].empty() && blocked[part].empty()) continue;
+    canvas.fade_out(begin_of(part), begin_of(part + 1), [&] {
+      canvas.segments(free[part], kFog, spacing_);
+      canvas.segments(blocked[part], kBlockedInFog, spacing_);
+    });
+  }
 }
 
 void Picture::draw_edges(Canvas& canvas) const {
   const Graph& graph = world_.graph();
   if (graph.is_complete() || graph.edge_count() > kMostEdgesDrawn) return;
-  std::vector<Segment> open;
-  std::vector<Segment> closed;
-  for (const Edge& edge : graph.edges()) {
-    const bool blocked = world_.is_blocked(edge.a) || world_.is_blocked(edge.b);
-    (blocked ? closed : open).push_back({places_[edge.a], places_[edge.b]});
-  }
+  Parts<Edge> parts;
+  for (const Edge& edge : graph.edges()) parts[part_at(fog_.lifts_at(edge))].push_back(edge);
   const double line = std::clamp(spacing_ / 20, 0.4, 2.0);
-  canvas.segments(closed, kVisited, line);
-  canvas.segments(open, kEdge, line);
-  if (!graph.directed() || graph.edge_count() > kMostArrows) return;
-  for (const Segment& segment : open) {
-    // In the middle, where they do not meet.
-    const Point middle{(segment.from.x + 2 * segment.to.x) / 3, (segment.from.y + 2 * segment.to.y) / 3};
-    const double angle = std::atan2(segment.to.y - segment.from.y, segment.to.x - segment.from.x);
-    canvas.polygon(triangle(middle, angle, 5, 2.6), kEdge);
-  }
+  draw_parts(canvas, parts, [&](const std::vector<Edge>& edges, bool faint) {
+    std::vector<Segment> open;
+    std::vector<Segment> closed;
+    for (const Edge& edge : edges) {
+      const bool blocked = world_.is_blocked(edge.a) || world_.is_blocked(edge.b);
+      (blocked ? closed : open).push_back({places_[edge.a], places_[edge.b]});
+    }
+    canvas.segments(closed, faint ? kFaintLine : kVisited, line);
+    canvas.segments(open, faint ? kFaintLine : kEdge, line);
+    if (!graph.directed() || graph.edge_count() > kMostArrows) return;
+    for (const Segment& segment : open) {
+      // In the middle, where they do not meet.
+      const Point middle{(segment.from.x + 2 * segment.to.x) / 3, (segment.from.y + 2 * segment.to.y) / 3};
+      const double angle = std::atan2(segment.to.y - segment.from.y, segment.to.x - segment.from.x);
+      canvas.polygon(triangle(middle, angle, 5, 2.6), faint ? kFaintLine : kEdge);
+    }
+  });
 }
 
 void Picture::draw_nodes(Canvas& canvas) const {
-  std::vector<Point> free;
-  std::vector<Point> visited;
-  std::vector<Point> missed;
-  std::vector<Point> blocked;
-  for (NodeId node = 0; node < world_.node_count(); ++node) {
-    auto& kind = world_.is_blocked(node) ? blocked : walk_.empty() ? free : first_visits_[node] < 0 ? missed : visited;
-    kind.push_back(places_[node]);
-  }
+  Parts<NodeId> parts;
+  for (NodeId node = 0; node < world_.node_count(); ++node) parts[part_at(fog_.lifts_at(node))].push_back(node);
   const double radius = std::clamp(spacing_ * 0.225, 1.0, 9.0);
   const double line = std::clamp(radius / 6, 0.3, 1.5);
-  canvas.discs(blocked, {.radius = radius, .fill = kBlocked, .stroke = kInk, .stroke_width = line});
-  canvas.discs(free, {.radius = radius, .fill = kPaper, .stroke = kQuiet, .stroke_width = line});
-  canvas.discs(visited, {.radius = radius, .fill = kVisited, .stroke = kQuiet, .stroke_width = line});
-  canvas.discs(missed, {.radius = radius, .fill = kMissed, .stroke = kMissedLine, .stroke_width = line});
-  if (world_.labels().empty() || world_.node_count() > kMostWithLabels) return;
-  for (NodeId node = 0; node < world_.node_count(); ++node) {
-    canvas.text({places_[node].x, places_[node].y - radius - 4}, world_.labels()[node], 11, kInk, Anchor::kMiddle);
-  }
+  draw_parts(canvas, parts, [&](const std::vector<NodeId>& nodes, bool faint) {
+    std::vector<Point> free;
+    std::vector<Point> visited;
+    std::vector<Point> missed;
+    std::vector<Point> blocked;
+    for (const NodeId node : nodes) {
+      auto& kind = world_.is_blocked(node)   ? blocked
+                   : walk_.empty() || faint  ? free
+                   : first_visits_[node] < 0 ? missed
+                                             : visited;
+      kind.push_back(places_[node]);
+    }
+    const auto discs = [&](const std::vector<Point>& points, Colour fill, Colour stroke) {
+      canvas.discs(points, {.radius = radius, .fill = fill, .stroke = stroke, .stroke_width = line});
+    };
+    discs(blocked, faint ? kFaintBlocked : kBlocked, faint ? kFaintBlocked : kInk);
+    discs(free, faint ? kFaint : kPaper, faint ? kFaintLine : kQuiet);
+    discs(visited, kVisited, kQuiet);
+    discs(missed, kMissed, kMissedLine);
+    if (world_.labels().empty() || world_.node_count() > kMostWithLabels) return;
+    for (const NodeId node : nodes) {
+      canvas.text({places_[node].x, places_[node].y - radius - 4}, world_.labels()[node], 11, faint ? kFaintText : kInk,
+                  Anchor::kMiddle);
+    }
+  });
 }
 
 void Picture::draw_walk(Canvas& canvas) const {
@@ -296,9 +380,12 @@ void Picture::draw_legend(Canvas& canvas) const {
     for (int i = 0; i < 48; ++i) canvas.rectangle({x + 2.0 * i, y - 9}, 2.2, 10, colour_of_share(i / 47.0));
     x += 104;
     say("end");
-    const bool missed = std::any_of(world_.valid_nodes().begin(), world_.valid_nodes().end(),
-                                    [&](NodeId node) { return first_visits_[node] < 0; });
-    if (missed) explain(kMissed, "not visited");
+    const auto any_valid = [&](const auto& is_so) { return std::ranges::any_of(world_.valid_nodes(), is_so); };
+    const auto unseen = [&](NodeId node) { return fog_.lifts_at(node) < 0; };
+    if (any_valid([&](NodeId node) { return first_visits_[node] < 0 && !unseen(node); })) {
+      explain(kMissed, "not visited");
+    }
+    if (any_valid(unseen)) explain(cells_ ? kFog : kFaintLine, "not seen");
     if (world_.valid_count() < world_.node_count()) explain(kBlocked, "blocked");
     y += kLineHeight + 4;
   }

@@ -131,7 +131,7 @@ std::string title_of(const Answer& answer) {
 }
 
 Picture picture_of(const Answer& answer) {
-  return Picture(answer.world, answer.plan.walk, title_of(answer), plan_summary(answer));
+  return Picture(answer.world, answer.plan.walk, title_of(answer), plan_summary(answer), Fog(answer));
 }
 
 std::string plan_html(const Answer& answer) {

@@ -116,6 +116,9 @@ class PngCanvas final : public Canvas {
     cairo_stroke(context_.get());
   }
 
+  void fade_in(double /*begin*/, double /*end*/, const std::function<void()>& draw) override { draw(); }
+  void fade_out(double /*begin*/, double /*end*/, const std::function<void()>& /*draw*/) override {}
+
   std::string finish() override {
     check(cairo_status(context_.get()));
     std::string bytes;

@@ -9,6 +9,8 @@ namespace {
 
 static_assert(sizeof(Colour) == 3);
 
+constexpr double kShown = 0.9;  // of the time of a moving picture; the rest shows the finished one
+
 std::string points_of(std::span<const Point> points) {
   std::string text;
   for (const Point& point : points) text += fmt::format("{}{:.6g},{:.6g}", text.empty() ? "" : " ", point.x, point.y);
@@ -75,7 +77,6 @@ class SvgCanvas final : public Canvas {
     std::string moving;
     if (seconds_) {
       // Drawn between its two times, and kept until the picture begins again.
-      constexpr double kShown = 0.9;  // of the time; the rest shows the finished picture
       styles_ +=
           fmt::format("@keyframes w{0}{{0%,{1:.4g}%{{stroke-dashoffset:1.01}}{2:.4g}%,100%{{stroke-dashoffset:0}}}}\n",
                       parts_, 100 * kShown * begin, 100 * kShown * end);
@@ -88,22 +89,40 @@ class SvgCanvas final : public Canvas {
         points_of(points), hex(colour), width, seconds_ ? "butt" : "round", moving);
   }
 
+  void fade_in(double begin, double end, const std::function<void()>& draw) override {
+    if (!seconds_) return draw();
+    fade(0, 1, begin, end, draw);
+  }
+
+  void fade_out(double begin, double end, const std::function<void()>& draw) override {
+    if (seconds_) fade(1, 0, begin, end, draw);
+  }
+
   std::string finish() override {
     if (seconds_) {
       text_ += fmt::format(
-          "<style>\n@media (prefers-reduced-motion: no-preference) {{\n.walk{{stroke-dasharray:1.01;animation:{:g}s "
-          "linear "
-          "infinite}}\n{}}}\n</style>\n",
+          "<style>\n@media (prefers-reduced-motion: no-preference) {{\n.walk{{stroke-dasharray:1.01}}\n"
+          ".walk,.fade{{animation:{:g}s linear infinite}}\n{}}}\n</style>\n",
           *seconds_, styles_);
     }
     return text_ + "</svg>\n";
   }
 
  private:
+  // What `draw` draws goes from one opacity to another, and keeps that until the picture begins again.
+  void fade(int from, int to, double begin, double end, const std::function<void()>& draw) {
+    styles_ += fmt::format("@keyframes f{0}{{0%,{1:.4g}%{{opacity:{2}}}{3:.4g}%,100%{{opacity:{4}}}}}\n", fades_,
+                           100 * kShown * begin, from, 100 * kShown * end, to);
+    text_ += fmt::format("<g class=\"fade\" opacity=\"{}\" style=\"animation-name:f{}\">\n", to, fades_++);
+    draw();
+    text_ += "</g>\n";
+  }
+
   std::string text_;
   std::optional<double> seconds_;
   std::string styles_;
   int parts_ = 0;
+  int fades_ = 0;
 };
 
 }  // namespace

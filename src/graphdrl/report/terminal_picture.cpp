@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kFewestLines = 8;  // of a map, however small the screen
 constexpr Colour kMissedCell = {255, 175, 135};
+constexpr Colour kUnseenCell = {175, 175, 175};
 constexpr Colour kBlack = {0, 0, 0};  // blocked cells too: no colour of the walk is near it
 constexpr Colour kWhite = {255, 255, 255};
 constexpr double kDarkUpTo = 0.45;  // colour_of_share(): white letters stand out below, black ones above
@@ -61,8 +62,13 @@ class Line {
 
 class Drawing {
  public:
-  Drawing(const World& world, std::span<const NodeId> walk, const Screen& screen)
-      : world_(world), map_(*world.map()), walk_(walk), screen_(screen), visited_at_(first_visits(world, walk)) {}
+  Drawing(const World& world, std::span<const NodeId> walk, const Screen& screen, const Fog& fog)
+      : world_(world),
+        map_(*world.map()),
+        walk_(walk),
+        screen_(screen),
+        fog_(fog),
+        visited_at_(first_visits(world, walk)) {}
 
   std::string draw() const {
     const std::string legend = legend_of({"arrows: the first way out of a cell"}, ". not visited");
@@ -86,6 +92,7 @@ class Drawing {
         const NodeId node = map_.node({row, col});
         const std::string_view mark = mark_of(row, row + 1, col, col + 1);
         const std::string_view glyph = !mark.empty()             ? mark
+                                       : is_unseen(node)         ? " "
                                        : world_.is_blocked(node) ? (screen_.colour ? " " : "#")
                                                                  : arrows[node];
         line.add(std::string(glyph) += gap, share_of(node) <= kDarkUpTo && visited_at_[node] >= 0 ? kWhite : kBlack,
@@ -109,7 +116,8 @@ class Drawing {
         } else if (screen_.colour) {
           line.add("▀", top.colour, bottom.colour);
         } else {
-          line.add(shade(top.free + bottom.free, top.visited + bottom.visited), kBlack, kBlack);
+          const bool seen = top.seen + bottom.seen > 0;
+          line.add(seen ? shade(top.free + bottom.free, top.visited + bottom.visited) : " ", kBlack, kBlack);
         }
       }
       text += line.finished();
@@ -119,7 +127,8 @@ class Drawing {
 
   struct Pixel {
     Colour colour;  // the mean of its cells
-    int free = 0;
+    int seen = 0;
+    int free = 0;  // and seen
     int visited = 0;
   };
 
@@ -135,7 +144,8 @@ class Drawing {
         sum[0] += colour.red;
         sum[1] += colour.green;
         sum[2] += colour.blue;
-        result.free += world_.is_blocked(node) ? 0 : 1;
+        result.seen += is_unseen(node) ? 0 : 1;
+        result.free += is_unseen(node) || world_.is_blocked(node) ? 0 : 1;
         result.visited += visited_at_[node] >= 0 ? 1 : 0;
       }
     }
@@ -155,7 +165,10 @@ class Drawing {
     return walk_.size() < 2 ? 0 : visited_at_[node] / static_cast<double>(walk_.size() - 1);
   }
 
+  bool is_unseen(NodeId node) const { return fog_.lifts_at(node) < 0; }
+
   Colour colour_of(NodeId node) const {
+    if (is_unseen(node)) return kUnseenCell;
     if (world_.is_blocked(node)) return kBlack;
     return visited_at_[node] < 0 ? kMissedCell : colour_of_share(share_of(node));
   }
@@ -202,8 +215,9 @@ class Drawing {
       for (const char* const part : {"violet to yellow: early to late", "orange: not visited", "black: blocked"}) {
         parts.emplace_back(part);
       }
+      if (!fog_.empty()) parts.emplace_back("grey: not seen");
     } else {
-      parts.push_back(missed + ", # blocked");
+      parts.push_back(missed + ", # blocked" + (fog_.empty() ? "" : ", blank: not seen"));
     }
     std::string text;
     std::string line;
@@ -220,6 +234,7 @@ class Drawing {
   const GridMap& map_;
   std::span<const NodeId> walk_;
   Screen screen_;
+  const Fog& fog_;
   std::vector<int> visited_at_;  // [N]
 };
 
@@ -248,8 +263,8 @@ Screen screen_of(std::FILE* out) {
   return screen;
 }
 
-std::string draw_walk(const World& world, std::span<const NodeId> walk, const Screen& screen) {
-  return Drawing(world, walk, screen).draw();
+std::string draw_walk(const World& world, std::span<const NodeId> walk, const Screen& screen, const Fog& fog) {
+  return Drawing(world, walk, screen, fog).draw();
 }
 
 }  // namespace graphdrl

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "graphdrl/env/world.h"
+#include "graphdrl/report/fog.h"
 
 namespace graphdrl {
 
@@ -22,8 +23,9 @@ Screen screen_of(std::FILE* out);
 
 // The map with the walk, and a legend below. Where the screen has room for it, a cell is one character, or two side by
 // side: an arrow leaves each visited cell as the walk first does. Otherwise a character stands for k × 2k cells, with
-// the least k that fits: two pixels of their mean colour, or without colours a shade, the share visited.
+// the least k that fits: two pixels of their mean colour, or without colours a shade, the share visited. What a walk
+// that explores has never seen is blank, or grey.
 // REQUIRES: world.has_cells(); the walk is valid and not empty.
-std::string draw_walk(const World& world, std::span<const NodeId> walk, const Screen& screen);
+std::string draw_walk(const World& world, std::span<const NodeId> walk, const Screen& screen, const Fog& fog = {});
 
 }  // namespace graphdrl
