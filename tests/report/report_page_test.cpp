@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "explored.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/report/layout.h"
@@ -87,6 +88,18 @@ TEST(ReportPage, KnowsEdgesPlacesAndCosts) {
   EXPECT_THAT(replay["world"]["x"], ElementsAre(0, 0, -1));
   EXPECT_THAT(replay["plans"][0]["costs"], ElementsAre(0, 2.5, 3.5));
   EXPECT_DOUBLE_EQ(replay["plans"][0]["upper_bound"].get<double>(), 75);
+}
+
+TEST(ReportPage, KnowsWhatAWalkHasSeen) {
+  const World grid = grid_world("..\n#.\n");
+  ReportPage page("Seen");
+  page.add_plan(explored(grid, "edges", {0, 1}));
+  page.add_plan(report_on(grid, {0, 1}, 4));
+  const nlohmann::json plans = data_of(page)["replays"][0]["plans"];
+  EXPECT_EQ(plans[0]["reveal"], "edges");
+  EXPECT_THAT(plans[0]["seen_nodes"], ElementsAre(0, 1, 3));
+  EXPECT_THAT(plans[0]["seen_after_step"], ElementsAre(2, 3));
+  EXPECT_FALSE(plans[1].contains("seen_nodes")) << "the map was known";
 }
 
 TEST(ReportPage, LeavesOutALineThatIsStillBeingWritten) {

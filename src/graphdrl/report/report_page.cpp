@@ -74,6 +74,11 @@ Json plan_of(const Answer& answer) {
                {"visited", answer.plan.visited},
                {"budget", answer.task.budget()},
                {"optimal", answer.plan.optimal}};
+  if (!answer.discovered.nodes.empty()) {
+    json["reveal"] = answer.reveal.text();
+    json["seen_nodes"] = answer.discovered.nodes;
+    json["seen_after_step"] = answer.discovered.after_step;
+  }
   if (answer.world.open().weighted()) json["costs"] = costs_so_far(answer);
   if (std::isfinite(answer.plan.bound)) json["upper_bound"] = answer.world.percent_of_all(answer.plan.bound);
   return json;

@@ -47,12 +47,14 @@ def grid_world(name, rows):
     }
 
 
-def replay(program, folder, source, policies, budget, scored=False):
-    """Plans on one world. scored: the first has the explorer's scores. Adds what the page computes or may miss."""
+def replay(program, folder, source, policies, budget, scored=False, reveal=None):
+    """Plans on one world, which they explore where reveal says what visits show. scored: the first has the explorer's
+    scores. Adds what the page computes or may miss."""
     files = []
     for policy in policies:
         files.append(folder / f"{policy.replace(':', '-')}.json")
-        call(program, "plan", source, "--budget", budget, "--policy", policy, "--out", files[-1])
+        how = ["explore", source, "--reveal", reveal] if reveal else ["plan", source]
+        call(program, *how, "--budget", budget, "--policy", policy, "--out", files[-1])
     (made,) = data_of(program, folder, *files, "--map", source)["replays"]
     if scored:
         (with_scores,) = data_of(program, folder, files[0], "--map", source, "--scores", "explorer")["replays"]
@@ -219,19 +221,23 @@ def document(title, replays=(), runs=(), evaluations=()):
 
 
 def sample(program, folder):
-    """One report with everything: six worlds, three runs, an evaluation."""
+    """One report with everything: seven worlds, two of them explored, three runs, an evaluation."""
     (folder / "town.json").write_text(json.dumps(town(5, 40)))
     (folder / "cities.oplib").write_text(orienteering(9, 30))
-    for family, size in (("geometric", 200), ("loop-maze", 21)):
+    for family, size in (("geometric", 200), ("loop-maze", 21), ("rooms", 24), ("hexagons", 100)):
         call(program, "maps", "generate", family, "--size", size, "--count", 1, "--seed", 3, "--out", folder / family)
     (graph,) = (folder / "geometric").glob("*.json")
     (maze,) = (folder / "loop-maze").iterdir()
+    (rooms,) = (folder / "rooms").iterdir()
+    (hexagons,) = (folder / "hexagons").glob("*.json")
     replays = [
         replay(program, folder, "paper:a", ("explorer", "search", "nearest", "random"), 25, scored=True),
         replay(program, folder, maze, ("search", "dfs"), "1.1x"),
         replay(program, folder, graph, ("search", "nearest"), "1.1x"),
         replay(program, folder, folder / "town.json", ("search", "nearest"), 400),
         replay(program, folder, folder / "cities.oplib", ("search", "nearest"), 250),
+        replay(program, folder, rooms, ("pocket", "nearest"), "0.5x", reveal="sight:5"),
+        replay(program, folder, hexagons, ("dfs",), "0.4x", reveal="edges"),
     ]
     run = folder / "explorer"
     small = ["--rounds", 8, "--largest", 6, "--walks", 16, "--updates", 10, "--teacher-steps", 1]

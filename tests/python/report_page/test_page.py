@@ -225,6 +225,65 @@ def test_scores_are_listed_best_first(show, sample):
     assert [text.endswith("taken") for text in listed] == [node == plan["walk"][1] for _, node in expected]
 
 
+def test_fog_lifts_where_nodes_are_seen(show, sample):
+    """Cell by cell: one that has not been seen yet has another colour than without fog, the others have the same."""
+    data = one_replay(sample, 5, ["pocket"])
+    world, plan = data["replays"][0]["world"], data["replays"][0]["plans"][0]
+    page = show(data)
+    colours = lambda: page.js(
+        """const [rows, cols, nodes] = arguments;
+        const map = document.querySelector('.map');
+        const scale = (1 - 4 / Math.max(map.width, map.height)) * Math.min(map.width / cols, map.height / rows);
+        const at = (node) => [(node % cols) + 0.2 - cols / 2, Math.floor(node / cols) + 0.2 - rows / 2];
+        const place = (node) => [map.width / 2 + at(node)[0] * scale, map.height / 2 + at(node)[1] * scale];
+        const context = map.getContext('2d');
+        return nodes.map((node) => context.getImageData(...place(node), 1, 1).data.join());""",
+        world["rows"],
+        world["cols"],
+        sorted(set(plan["seen_nodes"])),
+    )
+    for step in (0, 5, len(plan["walk"]) // 2, 3):
+        page.scrub(step)
+        page.settle()
+        assert number(page.text(".number-seen")) == plan["seen_after_step"][step]
+        fogged = colours()
+        page.click("fog")
+        page.settle()
+        clear = colours()
+        page.click("fog")
+        page.settle()
+        assert colours() == fogged
+        unseen = {node for node, one, other in zip(sorted(plan["seen_nodes"]), fogged, clear) if one != other}
+        assert unseen == set(plan["seen_nodes"][plan["seen_after_step"][step] :])
+
+
+def test_fog_is_offered_where_a_plan_explores(show, sample):
+    page = show(sample)
+    field = "return document.getElementById('fog-field').hidden"
+    assert page.js(field)
+    page.choose("replay", sample["replays"][6]["title"])
+    assert not page.js(field)
+    keys = "return ['.fog-key', '.missed-key'].map((key) => document.querySelector(key).checkVisibility())"
+    assert page.js(keys) == [True, True]
+    box = page.driver.find_element("id", "fog")
+    box.send_keys(" ")
+    assert page.js(keys) == [False, True]
+    assert page.js("return document.getElementById('play').getAttribute('aria-label')") == "Play"
+
+
+def test_going_back_covers_a_graph_again(show, sample):
+    page = show(one_replay(sample, 6))
+    picture = "return document.querySelector('.map').toDataURL()"
+    begin = page.js(picture)
+    page.click("to-end")
+    page.click("to-begin")
+    page.settle()
+    assert page.js(picture) == begin
+    page.click("fog")
+    page.settle()
+    assert page.js(picture) != begin
+
+
 def test_the_map_is_drawn_and_changes(show, sample):
     for index in range(len(sample["replays"])):
         page = show(one_replay(sample, index))
@@ -464,6 +523,23 @@ def test_a_replay_that_is_wrong_is_one_line_and_the_rest_stays(show, sample, spo
     assert line.startswith("Replay 1: ") and expected in line
     assert page.texts(".pane-name") == [plan["policy"] for plan in sample["replays"][1]["plans"][:2]]
     assert page.complaints() == []
+
+
+@pytest.mark.parametrize(
+    "nodes, counts, expected",
+    [
+        ([0, 77], lambda steps: [2] * steps, "sees node 77, but the world has 25"),
+        ([0, 1], lambda steps: [2], "does not have one count of nodes seen per node of its walk"),
+        ([0, 1], lambda steps: [1] * steps, "do not fit their counts"),
+        ([0, 1], lambda steps: [2, 1] + [2] * (steps - 2), "do not fit their counts"),
+    ],
+)
+def test_nodes_seen_that_cannot_be_are_one_line(show, sample, nodes, counts, expected):
+    data = one_replay(sample)
+    plan = data["replays"][0]["plans"][0]
+    plan |= {"seen_nodes": nodes, "seen_after_step": counts(len(plan["walk"]))}
+    (line,) = show(data).problems()
+    assert line.startswith("Replay 1: ") and expected in line
 
 
 HOSTILE = "</script><img src=x onerror='window.hacked=1'>{{data}}<!--\u2028'\"&"

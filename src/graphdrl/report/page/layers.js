@@ -1,4 +1,5 @@
-// The two pictures a map is made of: the world, drawn once per view, and the walk on it, drawn step after step.
+// The pictures a map is made of: the world, drawn once per view; the fog over it and the walk on it, drawn step after
+// step.
 // A view {scale, dx, dy} takes places of the world to pixels of the device.
 
 const kLineCell = 5; // pixels of a cell from which a walk is a line over tinted cells; below, it fills the cells
@@ -58,10 +59,11 @@ class Projection {
   }
   // The cell of a node in whole pixels, so that neighbours meet without a seam.
   cell(node) {
-    const half = this.view.scale / 2;
-    const left = Math.round(this.x(node) - half);
-    const top = Math.round(this.y(node) - half);
-    return [left, top, Math.round(this.x(node) + half) - left, Math.round(this.y(node) + half) - top];
+    const { scale, dx, dy } = this.view;
+    const [x, y] = [this.world.x[node], this.world.y[node]];
+    const left = Math.round((x - 0.5) * scale + dx);
+    const top = Math.round((y - 0.5) * scale + dy);
+    return [left, top, Math.round((x + 0.5) * scale + dx) - left, Math.round((y + 0.5) * scale + dy) - top];
   }
 }
 
@@ -79,6 +81,7 @@ class WorldLayer {
   constructor(world) {
     this.world = world;
     this.canvas = document.createElement('canvas');
+    this.nodes = new Uint32Array(world.node_count).map((_, node) => node);
     this.cells = null; // a picture with one pixel per cell
   }
 
@@ -91,8 +94,12 @@ class WorldLayer {
     this.context = this.canvas.getContext('2d');
     this.projection = new Projection(this.world, view, width, height);
     this.sizes = sizes;
-    if (this.world.is_grid) this.draw_cells();
-    else this.draw_graph();
+    if (this.world.is_grid) {
+      this.draw_cells();
+    } else {
+      const labelled = labelled_nodes(this.projection, sizes);
+      draw_graph(this.context, this.projection, sizes, { nodes: this.nodes, edges: this.world.edges, labelled });
+    }
   }
 
   cell_picture() {
@@ -141,61 +148,62 @@ class WorldLayer {
       context.strokeRect(left, top, right - left, bottom - top);
     }
   }
+}
 
-  draw_graph() {
-    const { world, context, projection, sizes } = this;
-    context.strokeStyle = theme.get('edge');
-    context.lineWidth = sizes.edge;
-    this.draw_edges();
-    if (world.directed && sizes.spacing > 18 && world.edges.length / 2 <= kMostArrows) this.draw_arrows();
-    const [free, blocked] = [theme.get('node'), theme.get('edge')];
-    for (let node = 0; node < world.node_count; ++node) {
-      if (!projection.sees(node, sizes.node)) continue;
-      context.fillStyle = world.blocked[node] ? blocked : free;
-      disc(context, projection.x(node), projection.y(node), node_radius(world, node, sizes));
-    }
-    if (world.labels && sizes.spacing > 34) this.draw_labels();
+// Part of a graph: nodes, edges as in World.edges, and those of the nodes that have their labels beside them.
+function draw_graph(context, projection, sizes, { nodes, edges, labelled }) {
+  const { world } = projection;
+  context.strokeStyle = theme.get('edge');
+  context.lineWidth = sizes.edge;
+  draw_edges(context, projection, edges);
+  if (world.directed && sizes.spacing > 18 && world.edges.length / 2 <= kMostArrows) {
+    context.fillStyle = theme.get('edge');
+    for (let i = 0; i < edges.length; i += 2) draw_arrow_head(context, projection, edges[i], edges[i + 1], sizes);
   }
-
-  draw_edges() {
-    const { context, projection } = this;
-    const { edges } = this.world;
-    for (let begin = 0; begin < edges.length; begin += 2 * kEdgesPerStroke) {
-      context.beginPath();
-      const end = Math.min(begin + 2 * kEdgesPerStroke, edges.length);
-      for (let i = begin; i < end; i += 2) {
-        if (!projection.sees_line(edges[i], edges[i + 1])) continue;
-        context.moveTo(projection.x(edges[i]), projection.y(edges[i]));
-        context.lineTo(projection.x(edges[i + 1]), projection.y(edges[i + 1]));
-      }
-      context.stroke();
-    }
+  const [free, blocked] = [theme.get('node'), theme.get('edge')];
+  for (const node of nodes) {
+    if (!projection.sees(node, sizes.node)) continue;
+    context.fillStyle = world.blocked[node] ? blocked : free;
+    disc(context, projection.x(node), projection.y(node), node_radius(world, node, sizes));
   }
+  draw_labels(context, projection, sizes, labelled);
+}
 
-  draw_arrows() {
-    const { context, projection, sizes } = this;
-    const { edges } = this.world;
-    context.fillStyle = context.strokeStyle;
-    for (let i = 0; i < edges.length; i += 2) {
-      draw_arrow_head(context, projection, edges[i], edges[i + 1], sizes);
+function draw_edges(context, projection, edges) {
+  for (let begin = 0; begin < edges.length; begin += 2 * kEdgesPerStroke) {
+    context.beginPath();
+    const end = Math.min(begin + 2 * kEdgesPerStroke, edges.length);
+    for (let i = begin; i < end; i += 2) {
+      if (!projection.sees_line(edges[i], edges[i + 1])) continue;
+      context.moveTo(projection.x(edges[i]), projection.y(edges[i]));
+      context.lineTo(projection.x(edges[i + 1]), projection.y(edges[i + 1]));
     }
+    context.stroke();
   }
+}
 
-  draw_labels() {
-    const { world, context, projection, sizes } = this;
-    context.fillStyle = theme.get('muted');
-    context.font = `${11 * sizes.ratio}px system-ui, sans-serif`;
-    context.textBaseline = 'middle';
-    let drawn = 0;
-    for (let node = 0; node < world.node_count && drawn < kMostLabels; ++node) {
-      if (!projection.sees(node, 0)) continue;
-      const text = String(world.labels[node]).slice(0, 24);
-      const away = node_radius(world, node, sizes) + 3 * sizes.ratio;
-      const fits = projection.x(node) + away + context.measureText(text).width < projection.width;
-      context.textAlign = fits ? 'left' : 'right';
-      context.fillText(text, projection.x(node) + (fits ? away : -away), projection.y(node));
-      ++drawn;
-    }
+// The nodes that have room for their labels.
+function labelled_nodes(projection, sizes) {
+  const { world } = projection;
+  const nodes = [];
+  if (!world.labels || sizes.spacing <= 34) return nodes;
+  for (let node = 0; node < world.node_count && nodes.length < kMostLabels; ++node) {
+    if (projection.sees(node, 0)) nodes.push(node);
+  }
+  return nodes;
+}
+
+function draw_labels(context, projection, sizes, nodes) {
+  const { world } = projection;
+  context.fillStyle = theme.get('muted');
+  context.font = `${11 * sizes.ratio}px system-ui, sans-serif`;
+  context.textBaseline = 'middle';
+  for (const node of nodes) {
+    const text = String(world.labels[node]).slice(0, 24);
+    const away = node_radius(world, node, sizes) + 3 * sizes.ratio;
+    const fits = projection.x(node) + away + context.measureText(text).width < projection.width;
+    context.textAlign = fits ? 'left' : 'right';
+    context.fillText(text, projection.x(node) + (fits ? away : -away), projection.y(node));
   }
 }
 
@@ -223,10 +231,10 @@ function draw_arrow_head(context, projection, a, b, sizes) {
   context.fill();
 }
 
-// The walk up to a step, coloured by order. A later step is drawn onto the picture; an earlier one starts from the
-// nearest checkpoint, a copy of the picture kept on the way. Steps drawn per change are bounded by the distance between
-// checkpoints, or by the steps gone forward.
-class TrailLayer {
+// What a walk has changed up to a step, drawn by draw(from, to). A later step is drawn onto the picture; an earlier one
+// starts from the nearest checkpoint, a copy of the picture kept on the way. Steps drawn per change are bounded by the
+// distance between checkpoints, or by the steps gone forward.
+class StepLayer {
   constructor(world, trail) {
     this.world = world;
     this.trail = trail;
@@ -234,12 +242,11 @@ class TrailLayer {
     this.every = Math.max(kCheckpointEvery, Math.ceil(trail.nodes.length / (kMostCheckpoints + 1)));
   }
 
-  reset(view, width, height, sizes, scale) {
+  reset(view, width, height, sizes) {
     clear_canvas(this.canvas, width, height);
     this.context = this.canvas.getContext('2d');
     this.projection = new Projection(this.world, view, width, height);
     this.sizes = sizes;
-    this.scale = scale;
     this.checkpoints = [];
     this.drawn = -1;
   }
@@ -271,6 +278,50 @@ class TrailLayer {
     if (!this.checkpoints[checkpoint]) return;
     this.context.drawImage(this.checkpoints[checkpoint], 0, 0);
     this.drawn = checkpoint * this.every;
+  }
+}
+
+// The fog over what has not been seen yet: the shape of the world in one colour, out of which the steps take what they
+// show.
+class FogLayer extends StepLayer {
+  reset(view, width, height, sizes, world_canvas) {
+    super.reset(view, width, height, sizes);
+    this.world_canvas = world_canvas;
+    this.labelled = new Set(this.world.is_grid ? [] : labelled_nodes(this.projection, sizes));
+  }
+
+  draw(from, to) {
+    if (from === 0) this.cover();
+    const { context, projection, trail, world } = this;
+    const nodes = trail.discovery.nodes.shown(from, to);
+    if (world.is_grid) {
+      for (const node of nodes) {
+        if (projection.sees(node, projection.view.scale)) context.clearRect(...projection.cell(node));
+      }
+      return;
+    }
+    const edges = trail.discovery.edges_shown(from, to);
+    const labelled = nodes.filter((node) => this.labelled.has(node));
+    context.globalCompositeOperation = 'destination-out';
+    draw_graph(context, projection, this.sizes, { nodes, edges, labelled });
+    context.globalCompositeOperation = 'source-over';
+  }
+
+  cover() {
+    const { context, canvas, world } = this;
+    context.drawImage(this.world_canvas, 0, 0);
+    context.globalCompositeOperation = 'source-in';
+    context.fillStyle = theme.get(world.is_grid ? 'fog' : 'faint');
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.globalCompositeOperation = 'source-over';
+  }
+}
+
+// The walk, coloured by order.
+class TrailLayer extends StepLayer {
+  reset(view, width, height, sizes, scale) {
+    super.reset(view, width, height, sizes);
+    this.scale = scale;
   }
 
   // Draws the steps from..to, one stretch of equal colour after another.

@@ -61,7 +61,9 @@ class MapView {
   constructor(canvas, world, trail, viewport, on_point) {
     Object.assign(this, { canvas, world, trail, viewport, on_point });
     this.step = 0;
+    this.fogged = false;
     this.world_layer = new WorldLayer(world);
+    this.fog_layer = trail.discovery ? new FogLayer(world, trail) : null;
     this.trail_layer = new TrailLayer(world, trail);
     this.drawn_view = null;
     viewport.listeners.push(() => this.request());
@@ -77,6 +79,12 @@ class MapView {
 
   show(step) {
     this.step = step;
+    this.request();
+  }
+
+  // Whether the fog is shown, where the walk has any.
+  set_fog(on) {
+    this.fogged = on && this.fog_layer !== null;
     this.request();
   }
 
@@ -126,9 +134,11 @@ class MapView {
     const view = this.view();
     if (!this.drawn_view || (!this.viewport.moving && !same_view(view, this.drawn_view))) this.draw_layers(view);
     this.trail_layer.show(this.step);
+    if (this.fogged) this.fog_layer.show(this.step);
     const context = this.canvas.getContext('2d');
     context.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.copy(context, this.world_layer.canvas, view);
+    if (this.fogged) this.copy(context, this.fog_layer.canvas, view);
     this.copy(context, this.trail_layer.canvas, view);
     draw_marks(context, new Projection(this.world, view, this.canvas.width, this.canvas.height), this);
     this.canvas.style.touchAction = this.viewport.zoom > 1 ? 'none' : 'pan-x pan-y';
@@ -138,6 +148,7 @@ class MapView {
     const { width, height } = this.canvas;
     const sizes = sizes_of(this.world, view, this.ratio);
     this.world_layer.draw(view, width, height, sizes);
+    this.fog_layer?.reset(view, width, height, sizes, this.world_layer.canvas);
     this.trail_layer.reset(view, width, height, sizes, walk_scale(theme.dark));
     this.drawn_view = view;
   }
@@ -271,11 +282,13 @@ function draw_mark(context, projection, node, sizes, shape, fill) {
   context.stroke();
 }
 
-function draw_missed(context, projection, { world, trail }, sizes) {
+// Where there is fog, it says what was not even seen.
+function draw_missed(context, projection, { world, trail, fogged }, sizes) {
   const arm = world.is_grid ? clamp(sizes.spacing * 0.18, 0.5, 5) * sizes.ratio : Math.max(sizes.node, 2 * sizes.ratio);
   context.beginPath();
   for (let node = 0; node < world.node_count; ++node) {
     if (world.blocked[node] || trail.first_visit[node] >= 0 || !projection.sees(node, arm)) continue;
+    if (fogged && trail.discovery.first_seen[node] < 0) continue;
     const [x, y] = [projection.x(node), projection.y(node)];
     if (arm < 2) {
       context.rect(x - arm, y - arm, 2 * arm, 2 * arm);

@@ -39,6 +39,7 @@ class Pane {
   set_up_numbers() {
     const names = { step: 'Step', visited: 'Visited', coverage: 'Coverage', cost: 'Budget spent', bound: 'At most' };
     if (this.trail.prize) names.prize = 'Prize';
+    if (this.trail.discovery) names.seen = 'Seen';
     this.numbers = {};
     for (const [name, title] of Object.entries(names)) {
       const value = element('span', { className: `number-${name}` });
@@ -55,16 +56,25 @@ class Pane {
     this.numbers.cost_of.textContent = is_number(budget) ? `of ${plain(budget)}${world.unit}` : world.unit;
     this.numbers.bound.textContent = is_number(upper_bound) ? `${fixed(upper_bound)} %` : kDash;
     this.numbers.bound_of.textContent = optimal ? 'optimal' : this.trail.prize ? 'of prizes' : '';
+    if (trail.discovery) this.numbers.seen_of.textContent = `of ${plain(world.valid_count)}`;
     if (trail.prize) this.numbers.prize_of.textContent = `of ${plain(world.total_prize)}`;
   }
 
   set_up_texts() {
     const { trail, world } = this;
     this.find('.map').setAttribute('aria-label', `Map of ${world.describe()}. ${this.summary()}`);
-    this.find('.missed-key').hidden = trail.visited[trail.last] === world.valid_count;
     this.find('.score-key').hidden = !trail.plan.scores;
     this.find('.scores').hidden = !trail.plan.scores;
     if (world.laid_out) this.note('This graph has no coordinates. It is drawn so that near nodes lie near each other.');
+  }
+
+  // Whether the fog is shown, where the walk has any.
+  set_fog(on) {
+    const { map, trail, world } = this;
+    map.set_fog(on);
+    const marked_of = map.fogged ? trail.discovery.seen[trail.last] : world.valid_count;
+    this.find('.fog-key').hidden = !map.fogged;
+    this.find('.missed-key').hidden = trail.visited[trail.last] === marked_of;
   }
 
   note(text) {
@@ -83,6 +93,7 @@ class Pane {
       `for ${plain(trail.costs[end])}${world.unit}.`,
       `It starts at ${world.name_of(trail.nodes[0])} and ends at ${world.name_of(trail.nodes[end])}.`,
       missed === 0 ? 'It misses none.' : `It misses ${plain(missed)}.`,
+      ...(trail.discovery ? [`It sees ${plain(trail.discovery.seen[end])} of ${plain(world.valid_count)} nodes.`] : []),
     ].join(' ');
   }
 
@@ -103,8 +114,11 @@ class Pane {
     }
     const first = trail.first_visit[node];
     const visit = first < 0 ? 'never visited' : `first visited at step ${plain(first)}`;
+    const seen_at = trail.discovery?.first_seen[node];
+    const sight = seen_at < 0 ? 'never seen' : `first seen at step ${plain(seen_at)}`;
     const prize = world.prizes ? `, prize ${plain(world.prizes[node])}` : '';
-    line.textContent = `${world.name_of(node)}${prize}: ${world.blocked[node] ? 'blocked' : visit}`;
+    const what = world.blocked[node] ? 'blocked' : visit;
+    line.textContent = `${world.name_of(node)}${prize}: ${what}${trail.discovery ? `, ${sight}` : ''}`;
   }
 
   show(step) {
@@ -115,6 +129,7 @@ class Pane {
     numbers.visited.textContent = plain(trail.visited[step]);
     numbers.coverage.textContent = `${fixed(trail.coverage(step))} %`;
     numbers.cost.textContent = plain(trail.costs[step]);
+    if (trail.discovery) numbers.seen.textContent = plain(trail.discovery.seen[step]);
     if (trail.prize) numbers.prize.textContent = plain(trail.prize[step]);
     if (trail.plan.scores) this.show_scores(trail.scores(step) ?? [], world);
   }
@@ -145,7 +160,8 @@ class Pane {
     const budget = is_number(trail.budget) ? ` of ${plain(trail.budget)}` : '';
     const where = `step ${plain(step)} of ${plain(trail.last)}, at ${world.name_of(trail.nodes[step])}`;
     const spent = `${plain(trail.costs[step])}${budget} spent`;
-    return `${trail.policy}: ${where}, ${fixed(trail.coverage(step))} % visited, ${spent}.`;
+    const seen = trail.discovery ? `, ${plural(trail.discovery.seen[step], 'node')} seen` : '';
+    return `${trail.policy}: ${where}, ${fixed(trail.coverage(step))} % visited${seen}, ${spent}.`;
   }
 
   recolour() {

@@ -79,6 +79,8 @@ class Player {
     this.panes = shown.map((trail, i) => new Pane(world, trail, viewport, i, shown.length === 1));
     $('panes').replaceChildren(...this.panes.map((pane) => pane.root));
     $('panes').classList.toggle('panes-two', shown.length === 2);
+    $('fog-field').hidden = shown.every((trail) => trail.discovery === null);
+    this.set_fog();
     this.clock = new Clock(shown);
     this.chart = new ProgressChart(world, shown);
     $('scrubber').max = this.clock.last;
@@ -91,6 +93,10 @@ class Player {
     $('scrubber').value = this.tick;
     this.chart.show(this.clock.costs[this.tick]);
     if (!this.playing) this.speak_soon();
+  }
+
+  set_fog() {
+    for (const pane of this.panes) pane.set_fog($('fog').checked);
   }
 
   // Says where the walks are once the reader has stopped moving.
@@ -168,6 +174,7 @@ class Player {
         this.choose_plans(Number($('plan-0').value), Number($('plan-1').value) - 1);
       });
     }
+    $('fog').addEventListener('change', () => this.set_fog());
     $('player').addEventListener('keydown', (event) => this.key(event));
     theme.on_change(() => this.recolour());
   }
@@ -191,7 +198,7 @@ class Player {
       '-': () => this.set_speed(this.speed - 1),
       '−': () => this.set_speed(this.speed - 1),
     };
-    if (!actions[key] || (key === ' ' && target.matches('button'))) return;
+    if (!actions[key] || (key === ' ' && target.matches('button, [type="checkbox"]'))) return;
     event.preventDefault();
     actions[key]();
   }

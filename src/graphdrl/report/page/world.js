@@ -95,6 +95,24 @@ class World {
     };
   }
 
+  // Calls `see` for every obstacle beside a free node: in the cells around it, or where an edge leads from it.
+  for_each_obstacle(see) {
+    const look = (from, to) => {
+      if (this.blocked[to] && !this.blocked[from]) see(from, to);
+    };
+    for (let i = 0; i < this.edges.length; i += 2) {
+      look(this.edges[i], this.edges[i + 1]);
+      if (!this.directed) look(this.edges[i + 1], this.edges[i]);
+    }
+    if (!this.is_grid || this.valid_count === this.node_count) return;
+    for (let node = 0; node < this.node_count; ++node) {
+      const [row, col] = [Math.floor(node / this.cols), node % this.cols];
+      for (let r = Math.max(row - 1, 0); r <= Math.min(row + 1, this.rows - 1); ++r) {
+        for (let c = Math.max(col - 1, 0); c <= Math.min(col + 1, this.cols - 1); ++c) look(node, r * this.cols + c);
+      }
+    }
+  }
+
   has(node) {
     return Number.isInteger(node) && node >= 0 && node < this.node_count;
   }
@@ -129,6 +147,7 @@ class Trail {
     this.last = this.nodes.length - 1;
     this.read_costs(plan.costs);
     this.follow(world);
+    this.discovery = plan.seen_nodes ? new Discovery(world, this) : null;
     check(
       plan.visited === this.visited[this.last],
       `the plan of ${this.policy} says it visits ${plan.visited} nodes, but its walk visits ${this.visited[this.last]}`,
@@ -198,6 +217,85 @@ class Trail {
     }
     const sign = this.plan.lower_is_better ? 1 : -1;
     return scores.sort((a, b) => sign * (a.score - b.score) || a.node - b.node);
+  }
+}
+
+// Things by the step at which they are shown, for those shown at all.
+class Schedule {
+  // steps: of each thing; −1: never.
+  constructor(steps, last) {
+    this.begins = new Uint32Array(last + 2); // where the things of each step begin
+    for (const step of steps) if (step >= 0) ++this.begins[step + 1];
+    for (let step = 0; step <= last; ++step) this.begins[step + 1] += this.begins[step];
+    this.things = new Uint32Array(this.begins[last + 1]);
+    const next = this.begins.slice();
+    steps.forEach((step, thing) => {
+      if (step >= 0) this.things[next[step]++] = thing;
+    });
+  }
+
+  // Those of the steps from..to.
+  shown(from, to) {
+    return this.things.subarray(this.begins[from], this.begins[to + 1]);
+  }
+}
+
+// How a world that was not known beforehand became known on a walk. An obstacle is seen with the first node beside it.
+// An edge is known once both ends are seen or, where visits show edges, once a node that it leaves is visited.
+class Discovery {
+  constructor(world, trail) {
+    const { seen_nodes, seen_after_step, reveal } = trail.plan;
+    this.policy = trail.policy;
+    this.last = trail.last;
+    this.read(world, seen_nodes, seen_after_step);
+    world.for_each_obstacle((node, obstacle) => {
+      const [step, before] = [this.first_seen[node], this.first_seen[obstacle]];
+      if (step >= 0 && (before < 0 || step < before)) this.first_seen[obstacle] = step;
+    });
+    this.nodes = new Schedule(this.first_seen, this.last);
+    this.follow_edges(world, reveal === 'edges' ? trail.first_visit : null);
+  }
+
+  read(world, nodes, counts) {
+    check(
+      Array.isArray(nodes) && Array.isArray(counts) && counts.length === this.last + 1,
+      `the plan of ${this.policy} does not have one count of nodes seen per node of its walk`,
+    );
+    this.seen = Uint32Array.from(counts); // by each step
+    const rising = this.seen.every((count, step) => step === 0 || count >= this.seen[step - 1]);
+    const fitting = rising && this.seen[this.last] === nodes.length;
+    check(fitting, `the nodes that ${this.policy} sees do not fit their counts`);
+    this.first_seen = new Int32Array(world.node_count).fill(-1);
+    let step = 0;
+    nodes.forEach((node, i) => {
+      check(world.has(node), `${this.policy} sees node ${node}, but the world has ${world.node_count}`);
+      while (this.seen[step] <= i) ++step;
+      this.first_seen[node] = step;
+    });
+  }
+
+  // visited_at: of each node, where visits show edges; else null.
+  follow_edges({ edges, directed }, visited_at) {
+    const at = visited_at ?? this.first_seen;
+    const steps = new Int32Array(edges.length / 2).map((_, edge) => {
+      const [a, b] = [at[edges[2 * edge]], at[edges[2 * edge + 1]]];
+      if (visited_at && directed) return a;
+      const [first, last] = a < b ? [a, b] : [b, a];
+      if (visited_at) return first < 0 ? last : first;
+      return first < 0 ? -1 : last;
+    });
+    this.edge_schedule = new Schedule(steps, this.last);
+    this.edges = new Uint32Array(2 * this.edge_schedule.things.length);
+    this.edge_schedule.things.forEach((edge, i) => {
+      this.edges[2 * i] = edges[2 * edge];
+      this.edges[2 * i + 1] = edges[2 * edge + 1];
+    });
+  }
+
+  // The ends of those that become known at the steps from..to, as in World.edges.
+  edges_shown(from, to) {
+    const { begins } = this.edge_schedule;
+    return this.edges.subarray(2 * begins[from], 2 * begins[to + 1]);
   }
 }
 
