@@ -97,6 +97,7 @@ NodeId Discovery::see(double prize) {
   known.frontier.push_back(true);
   known.first_seen.push_back(static_cast<std::uint32_t>(known.version));
   known.seen_at.push_back(static_cast<std::uint32_t>(known.version));
+  known.frontier_neighbours.push_back(0);
   ++known.frontier_count;
   known.recent.push_back(node);
   if (to_end_ != nullptr) to_end_->push_back(kNoLimit);
@@ -106,10 +107,15 @@ NodeId Discovery::see(double prize) {
 void Discovery::connect(const Edge& edge, const Graph::Places& places) {
   Known& known = *known_;
   if (known.open.index_of(edge.a, edge.b) >= 0) return;
+  const bool joined = known.into && known.both_ways->index_of(edge.a, edge.b) >= 0;  // by an edge the other way
   known.open.add_edge(edge, places);
   if (known.into) {
     known.into->add_edge({edge.b, edge.a, edge.cost});
-    if (known.both_ways->index_of(edge.a, edge.b) < 0) known.both_ways->add_edge({edge.a, edge.b, 1});
+    if (!joined) known.both_ways->add_edge({edge.a, edge.b, 1});
+  }
+  if (!joined) {
+    known.frontier_neighbours[edge.a] += known.frontier[edge.b];
+    known.frontier_neighbours[edge.b] += known.frontier[edge.a];
   }
   for (const NodeId node : {edge.a, edge.b}) {
     if (!known.frontier[node]) continue;
@@ -127,6 +133,7 @@ void Discovery::close(NodeId node) {
   count(node);
   known.frontier[node] = false;
   --known.frontier_count;
+  for (const NodeId next : view_.both_ways().neighbours(node)) --known.frontier_neighbours[next];
   while (!known.recent.empty() && !known.frontier[known.recent.back()]) known.recent.pop_back();
 }
 

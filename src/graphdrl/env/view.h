@@ -61,6 +61,7 @@ struct Known {
   std::vector<bool> frontier = {};             // [N], nodes whose edges may not all be known
   std::vector<std::uint32_t> first_seen = {};  // [N], the version in which the node was first seen: visits, counted
   std::vector<std::uint32_t> seen_at = {};     // [N], likewise last
+  std::vector<std::int32_t> frontier_neighbours = {};  // [N], how many, whichever way edges lead
   int frontier_count = 0;
   Census census = {};
   // Frontier nodes in the order in which they were last seen. Some may stand there earlier, too, and some are no
@@ -99,6 +100,7 @@ class View {
   // When a node was last seen; later is more. REQUIRES: grows().
   std::uint32_t seen_at(NodeId node) const { return known_->seen_at[node]; }
   std::uint32_t first_seen(NodeId node) const { return known_->first_seen[node]; }
+  int frontier_neighbours(NodeId node) const { return known_->frontier_neighbours[node]; }
   int frontier_count() const { return known_->frontier_count; }
   const Census& census() const { return known_->census; }
   // As Known's.

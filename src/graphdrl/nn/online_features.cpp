@@ -9,6 +9,7 @@ namespace graphdrl {
 namespace {
 
 constexpr int kMostScanned = 100;  // edges looked at around a first visit
+constexpr int kMostScannedOfPart = 400;
 constexpr int kMostOfPart = 64;    // frontier nodes of a part that are counted
 constexpr int kFarthest = 4;       // known steps from a first visit that are looked at
 constexpr double kAboutAsNear = 1 + 1e-9;
@@ -54,13 +55,35 @@ class Surroundings {
       if (!now_.ground().contains(next)) continue;
       const int degree = graph_.degree(next);
       around.least_degree = around.met == 0 ? degree : std::min(around.least_degree, degree);
-      around.most_siblings = std::max(around.most_siblings, frontier_neighbours(next));
+      around.most_siblings = std::max(around.most_siblings, now_.view().frontier_neighbours(next));
       ++around.met;
     }
     look_around(node, around);
-    around.part = part_of(node);
     return around;
   }
+
+  // A part of the frontier: frontier nodes with visited neighbours that are the same, or next to each other. Gives how
+  // many; in_part() tells of which part until the next call of anything else.
+  int part_of(NodeId node) {
+    begin();
+    meet(node, 0);
+    int part = 1;
+    int scanned = 0;
+    for (std::size_t head = 0; head < scratch_.queue.size() && scanned < kMostScannedOfPart; ++head) {
+      const NodeId here = scratch_.queue[head];
+      for (const NodeId next : graph_.neighbours(here)) {
+        ++scanned;
+        if (now_.is_new(next)) {
+          part += meet(next, 0);
+        } else if (now_.view().frontier_neighbours(next) > 0) {
+          meet(next, 0);
+        }
+      }
+      if (part >= kMostOfPart) break;
+    }
+    return part;
+  }
+  bool in_part(NodeId node) const { return scratch_.marks[node] == scratch_.mark; }
 
  private:
   void begin() {
@@ -77,11 +100,6 @@ class Surroundings {
     scratch_.queue.push_back(node);
     scratch_.steps.push_back(steps);
     return true;
-  }
-  int frontier_neighbours(NodeId node) const {
-    int count = 0;
-    for (const NodeId next : graph_.neighbours(node)) count += now_.is_new(next);
-    return count;
   }
 
   // Breadth first through ground.
@@ -105,28 +123,6 @@ class Surroundings {
         around.to_next = std::min(around.to_next, steps + 1);
       }
     }
-  }
-
-  // A part of the frontier: frontier nodes with visited neighbours that are the same, or next to each other.
-  int part_of(NodeId node) {
-    begin();
-    meet(node, 0);
-    int part = 1;
-    int scanned = 0;
-    for (std::size_t head = 0; head < scratch_.queue.size() && scanned < 4 * kMostScanned; ++head) {
-      const NodeId here = scratch_.queue[head];
-      const bool frontier = now_.is_new(here);
-      for (const NodeId next : graph_.neighbours(here)) {
-        ++scanned;
-        if (now_.is_new(next)) {
-          part += meet(next, 0);
-        } else if (frontier || frontier_neighbours(next) > 0) {
-          meet(next, 0);
-        }
-      }
-      if (part >= kMostOfPart) break;
-    }
-    return part;
   }
 
   const Exploration& now_;
@@ -194,6 +190,13 @@ std::span<const FirstVisit> encode_online(const Exploration& now, double budget,
     least_met = std::min(least_met, around.back().met);
     most_met = std::max(most_met, around.back().met);
     oldest = std::min<double>(oldest, view.first_seen(visit.node));
+  }
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    if (around[i].part > 0) continue;
+    const int part = surroundings.part_of(visits[i].node);
+    for (std::size_t j = i; j < visits.size(); ++j) {
+      if (around[j].part == 0 && surroundings.in_part(visits[j].node)) around[j].part = part;
+    }
   }
 
   std::array<float, kOnlineMapFeatureCount> of_map{};
