@@ -202,7 +202,53 @@ void bind_callbacks(nb::module_& module) {
           "What the whole walk may cost, in units of cost.")
       .def_prop_ro(
           "spent", [](const State& state) { return state.get().spent; },
-          "What the walk has cost so far, in units of cost.");
+          "What the walk has cost so far, in units of cost.")
+      .def(
+          "edges",
+          [](const State& state) {
+            std::vector<std::int64_t> ends;
+            std::vector<double> costs;
+            for (const Edge& edge : state.get().view().open().edges()) {
+              ends.insert(ends.end(), {edge.a, edge.b});
+              costs.push_back(edge.cost);
+            }
+            return std::tuple(to_numpy(std::move(ends), 2), to_numpy(std::move(costs)));
+          },
+          nb::rv_policy::automatic,
+          "The edges known, without those of blocked nodes: from and to, [E, 2], int64; what each costs, [E], float64. "
+          "In an undirected graph they lead both ways.")
+      .def_prop_ro(
+          "prizes",
+          [](const State& state) {
+            const View& view = state.get().view();
+            std::vector<double> prizes;
+            for (NodeId node = 0; node < view.node_count(); ++node) prizes.push_back(view.prize(node));
+            return to_numpy(std::move(prizes));
+          },
+          nb::rv_policy::automatic, "What the first visit of each node is worth. Shape [N], float64.")
+      .def_prop_ro(
+          "frontier",
+          [](const State& state) {
+            const View& view = state.get().view();
+            std::vector<NodeId> nodes;
+            for (NodeId node = 0; node < view.node_count(); ++node) {
+              if (view.is_frontier(node)) nodes.push_back(node);
+            }
+            return to_numpy(std::move(nodes));
+          },
+          nb::rv_policy::automatic,
+          "The numbers of the nodes that may have edges that are not known, ascending, int32. None of a known map.")
+      .def_prop_ro(
+          "seen_at",
+          [](const State& state) {
+            const View& view = state.get().view();
+            std::vector<std::uint32_t> visits(view.node_count());
+            for (NodeId node = 0; view.grows() && node < view.node_count(); ++node) visits[node] = view.seen_at(node);
+            return to_numpy(std::move(visits));
+          },
+          nb::rv_policy::automatic,
+          "When each node was last seen: later is more, by 1 for each first visit. 0 of a known map. Shape [N], "
+          "uint32.");
 }
 
 }  // namespace graphdrl::python

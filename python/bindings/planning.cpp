@@ -27,9 +27,14 @@ Asked asked_of(const World& world, const std::optional<std::string>& budget, std
 
 Answer plan(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
             const std::optional<AskedEnd>& end, const std::string& policy, const nb::object& own,
-            std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress) {
+            std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress,
+            const std::string& reveal, const std::string& score, std::optional<double> think_time) {
   const Task task(world, asked_of(world, budget, start, end));
-  PlanRequest request{.policy = policy, .seed = seed};
+  PlanRequest request{.policy = policy,
+                      .seed = seed,
+                      .reveal = Reveal::parse(reveal),
+                      .score = parse_score(score),
+                      .think_s = think_time.value_or(kNoLimit)};
   if (!own.is_none()) {
     const OwnPolicy chosen = own_policy_of(own);
     request.own_planner = chosen.planner;
@@ -58,6 +63,11 @@ nb::dict claims_of(const Answer& answer) {
   claims["optimal"] = answer.plan.optimal;
   claims["unreachable"] = answer.unreachable;
   claims["elapsed_s"] = answer.elapsed_s;
+  claims["prize"] = answer.plan.prize;
+  claims["reveal"] = answer.reveal.text();
+  claims["seen_counts"] = answer.score == Score::kSeen;
+  claims["seen"] = answer.discovered.nodes;
+  claims["seen_after_step"] = answer.discovered.after_step;
   return claims;
 }
 
@@ -73,9 +83,19 @@ Answer restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, con
                 .policy = nb::cast<std::string>(claims["policy"]),
                 .plan = plan_of_walk(task, std::move(nodes), nb::cast<bool>(claims["optimal"])),
                 .unreachable = nb::cast<int>(claims["unreachable"]),
-                .elapsed_s = nb::cast<double>(claims["elapsed_s"])};
+                .elapsed_s = nb::cast<double>(claims["elapsed_s"]),
+                .reveal = Reveal::parse(nb::cast<std::string>(claims["reveal"])),
+                .score = nb::cast<bool>(claims["seen_counts"]) ? Score::kSeen : Score::kVisited,
+                .discovered = {.nodes = nb::cast<std::vector<NodeId>>(claims["seen"]),
+                               .after_step = nb::cast<std::vector<int>>(claims["seen_after_step"])}};
+  answer.plan.prize = nb::cast<double>(claims["prize"]);
   answer.plan.bound = nb::cast<double>(claims["bound"]);
   return answer;
+}
+
+// Nothing of a known map, which was not seen bit by bit.
+std::optional<OutArray<NodeId>> if_explored(const Answer& answer, const std::vector<NodeId>& values) {
+  return answer.reveal.all() ? std::nullopt : std::optional(to_numpy(values));
 }
 
 }  // namespace
@@ -88,6 +108,12 @@ void bind_planning(nb::module_& module) {
           "walk", [](const Answer& answer) { return to_numpy(answer.plan.walk); }, nb::rv_policy::automatic)
       .def_prop_ro(
           "costs", [](const Answer& answer) { return to_numpy(costs_so_far(answer)); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "seen", [](const Answer& answer) { return if_explored(answer, answer.discovered.nodes); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "seen_after_step", [](const Answer& answer) { return if_explored(answer, answer.discovered.after_step); },
+          nb::rv_policy::automatic)
       .def_prop_ro("visited", [](const Answer& answer) { return answer.plan.visited; })
       .def_prop_ro("prize", [](const Answer& answer) { return answer.plan.prize; })
       .def_prop_ro("cost", [](const Answer& answer) { return answer.plan.cost; })
@@ -109,7 +135,8 @@ void bind_planning(nb::module_& module) {
       });
   module.def("plan", &plan, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(), nb::arg("end").none(),
              nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"),
-             nb::arg("on_progress").none());
+             nb::arg("on_progress").none(), nb::arg("reveal") = "all", nb::arg("score") = "visited",
+             nb::arg("think_time") = nb::none());
   module.def("upper_bound", &upper_bound, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(),
              nb::arg("end").none(), nb::arg("time_limit").none());
 }

@@ -1,7 +1,7 @@
 """Visit as many nodes of a graph as a budget allows: plans with bounds, on any graph or map."""
 
 from ._core import FAMILIES, Error, MachineError, State, __version__, threads
-from .planning import Plan, evaluate, plan, set_threads, upper_bound
+from .planning import Plan, evaluate, explore, plan, set_threads, upper_bound
 from .policies import Explorer, FirstVisits, PaperNetwork, Policy
 from .registration import register_environments
 from .training import Run, resume, train
@@ -21,6 +21,7 @@ __all__ = [
     "World",
     "__version__",
     "evaluate",
+    "explore",
     "plan",
     "resume",
     "set_threads",

@@ -20,7 +20,7 @@ OwnPolicy = Callable[[_core.State], int | None]
 
 
 class Plan:
-    """One walk, and how far from the best it may be. `plan` makes it; it does not change."""
+    """One walk, and how far from the best it may be. `plan` and `explore` make it; it does not change."""
 
     __slots__ = ("_core", "world")
 
@@ -55,7 +55,7 @@ class Plan:
 
     @property
     def prize(self) -> float:
-        """The sum of the prizes of the nodes visited; their number where there are no prizes."""
+        """The sum of the prizes of the nodes visited, or seen where those count; their number without prizes."""
         return self._core.prize
 
     @property
@@ -70,13 +70,29 @@ class Plan:
 
     @property
     def bound(self) -> float:
-        """No walk within the budget has a higher prize (docs/search.md, "Bounds")."""
+        """No walk within the budget has a higher prize, knowing the map (docs/search.md, "Bounds").
+
+        Infinite where nodes seen count.
+        """
         return self._core.bound
 
     @property
     def optimal(self) -> bool:
         """Whether it is proved that no walk has a higher prize than this one."""
         return self._core.optimal
+
+    @property
+    def seen(self) -> list[Node] | None:
+        """The nodes seen, as the world calls them, in the order in which they were seen; None where the map was known.
+
+        A policy knew `seen[n]` by the number n.
+        """
+        return None if self._core.seen is None else self.world.names(self._core.seen)
+
+    @property
+    def seen_after_step(self) -> NDArray[np.int32] | None:
+        """How many nodes were seen at each position of the walk; None where the map was known. Shape [steps + 1]."""
+        return self._core.seen_after_step
 
     @property
     def policy(self) -> str:
@@ -101,7 +117,7 @@ class Plan:
         self._core.save(path_text(path))
 
     def to_json(self) -> str:
-        """The document that `graphdrl plan --json` prints."""
+        """The document that `graphdrl plan --json` or `graphdrl explore --json` prints."""
         return self._core.json()
 
     def to_dict(self) -> dict[str, Any]:
@@ -172,6 +188,15 @@ def _seconds(time_limit: float | None) -> float | None:
     return None if time_limit is None else number(time_limit, "time limit")
 
 
+def _think_time(seconds: float | None) -> float | None:
+    if seconds is None:
+        return None
+    value = number(seconds, "think time")
+    if not value > 0:
+        raise wrong("think time", "seconds above 0", seconds)
+    return value
+
+
 def policy_of(policy: str | Policy | OwnPolicy) -> tuple[str, Any]:
     """What a policy is called, and what it is unless it is known by that name."""
     if isinstance(policy, str):
@@ -218,6 +243,64 @@ def plan(
     report = _core.plan(
         *_asked(world, budget, start, end), name, own, _seconds(time_limit), whole_number(seed, "seed"),
         function(on_progress, "on_progress"),
+    )  # fmt: skip
+    return Plan(world, report)
+
+
+def explore(
+    world: World,
+    budget: Budget | None = None,
+    start: Node | None = None,
+    end: Node | None = None,
+    policy: str | Policy | OwnPolicy = "pocket",
+    *,
+    reveal: str = "edges",
+    score: str = "visited",
+    until_covered: bool = False,
+    think_time: float | None = None,
+    time_limit: float | None = None,
+    seed: int = 1,
+    on_progress: OnProgress | None = None,
+) -> Plan:
+    """Explores a world that is not known beforehand: the policy chooses by what was seen so far.
+
+    The walk is that of `graphdrl explore` with the same options. A policy of your own gets a State of what is known:
+    nodes have numbers 0, 1, 2 … in the order in which they were seen, the start first, and arrays of N values have one
+    for each node seen. `state.edges()`, `state.frontier`, `state.seen_at` and `state.prizes` say the rest of what is
+    known. The numbers of an episode say nothing of the world's own.
+
+    Args:
+        world: where to walk.
+        budget: as of `plan`. A multiple is of all free nodes, seen or not.
+        start: as of `plan`.
+        end: as of `plan`. A walk that must end at a node keeps the way back to its start, until it has seen that node
+            and can pay for the way there.
+        policy: as of `plan`. Policies that plan do so on what is known, anew with each discovery.
+        reveal: what a visit shows. `edges`: those of the node, and where they lead; `radius:R`: all within the cost R;
+            `sight:R`, on grids: what straight lines of the length R meet; `all`: the whole map.
+        score: what counts, nodes `visited` or nodes `seen`.
+        until_covered: instead of a budget: until nothing is left that is known and not visited, or seen.
+        think_time: seconds for each choice, of policies that plan.
+        time_limit: seconds in all; then the walk goes straight to where it must end. Without the two limits, the same
+            arguments give the same walk.
+        seed: of the numbers by which nodes are known, the search, and random policies.
+        on_progress: as of `plan`; the bound is infinite.
+
+    Returns:
+        The walk, with `seen` and `seen_after_step`. Its bound is that of walks that know the map.
+
+    Raises:
+        Error: as of `plan`; a bad `reveal` or `score`, or a time that is no time; sight without cells; a budget with
+            `until_covered`.
+    """
+    name, own = policy_of(policy)
+    if flag(until_covered, "until_covered"):
+        if budget is not None:
+            raise Error(f"bad budget: until_covered takes none, got {shown(budget)}")
+        budget = "inf"
+    report = _core.plan(
+        *_asked(world, budget, start, end), name, own, _seconds(time_limit), whole_number(seed, "seed"),
+        function(on_progress, "on_progress"), text(reveal, "reveal"), text(score, "score"), _think_time(think_time),
     )  # fmt: skip
     return Plan(world, report)
 

@@ -77,6 +77,111 @@ def test_walks_are_those_of_the_program(tmp_path):
         assert answer["upper_bound"] == expected["upper_bound"]
 
 
+EXPLORATIONS = [
+    {},
+    {"policy": "nearest", "reveal": "radius:2", "end": "start"},
+    {"policy": "random-walk", "seed": 7},
+    {"policy": "search:300", "reveal": "radius:1.5", "score": "seen"},
+    {"policy": "explorer", "end": "start"},
+    {"policy": "frontier", "until_covered": True, "score": "seen"},
+]
+
+
+def test_explorations_are_those_of_the_program(tmp_path):
+    for i, world in enumerate(neutral_worlds(24)):
+        path = tmp_path / f"world-{i}.{'txt' if world.is_grid else 'json'}"
+        write_world(world, path)
+        options = EXPLORATIONS[i % len(EXPLORATIONS)]
+        if world.is_grid and i % 2:
+            options = options | {"reveal": "sight:3"}
+        budget = None if "until_covered" in options else "0.7x"
+        words = ["--budget", budget] if budget else ["--until", "covered"]
+        for name, value in options.items():
+            words += [] if name == "until_covered" else [f"--{name}", value]
+        expected = run_json("explore", path, *words, "--start", f"#{start_of(world)}", "--json")
+        plan = graphdrl.explore(world, budget, start=world.names([start_of(world)])[0], **options)
+        assert plan.nodes.tolist() == expected["walk"], path
+        assert [world.number(node) for node in plan.seen] == expected["seen_nodes"]
+        assert plan.seen_after_step.tolist() == expected["seen_after_step"]
+        assert plan.to_dict() | {"elapsed_s": 0} == expected | {"elapsed_s": 0, "map": world.name}
+        again = pickle.loads(pickle.dumps(plan))
+        assert again.to_json() == plan.to_json() and again.prize == plan.prize and again.seen == plan.seen
+
+
+class Nearest:
+    """The nearest rule, by what states say; checks that they say what visits have shown and no more."""
+
+    def __init__(self, world):
+        self.world = world
+        self.states = 0
+
+    def __call__(self, state):
+        self.states += 1
+        ends, costs = state.edges()
+        assert state.walk[0] == 0 and state.walk[-1] == state.position
+        assert len(state.visits) == len(state.prizes) == len(state.seen_at)
+        assert not set(state.frontier) & set(np.flatnonzero(state.visits))
+        graph = nx.DiGraph() if self.world.directed else nx.Graph()
+        graph.add_nodes_from(range(len(state.visits)))
+        graph.add_weighted_edges_from((int(a), int(b), c) for (a, b), c in zip(ends, costs))
+        assert set(state.moves) <= set(graph[state.position])
+        visited = set(np.flatnonzero(state.visits).tolist())
+        assert not [edge for edge in graph.edges if not visited & set(edge)]  # visits alone show edges
+        assert set(graph) == visited | {next for node in visited for next in graph[node]}
+        for node in set(graph) - visited:
+            for other in list(graph[node]):
+                if graph.is_directed() or other not in visited:
+                    graph.remove_edge(node, other)
+        costs, ways = nx.single_source_dijkstra(graph, state.position)
+        new = [(costs[node], node) for node in ways if node not in visited]
+        return ways[min(new)[1]][1] if new and costs[min(new)[1]] <= state.budget - state.spent else None
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"reveal": "smell"}, "bad reveal: expected all, edges"),
+        ({"reveal": None}, "bad reveal: expected text"),
+        ({"score": "heard"}, "bad score: expected visited or seen"),
+        ({"until_covered": True}, "bad budget: until_covered takes none, got 9"),
+        ({"until_covered": 1}, "bad until_covered"),
+        ({"think_time": 0}, "bad think time: expected seconds above 0, got 0"),
+        ({"think_time": "long"}, "bad think time: expected a number"),
+        ({"reveal": "sight:3"}, "sight needs a map of cells"),
+        ({"budget": "much"}, "bad budget"),
+    ],
+)
+def test_explorations_say_what_to_change(options, message):
+    with pytest.raises(graphdrl.Error, match=message):
+        graphdrl.explore(graphdrl.World.from_edges([[0, 1], [1, 2]]), **({"budget": 9} | options))
+
+
+@pytest.mark.parametrize("family", ["tree", "erdos-renyi", "maze"])
+def test_own_policies_see_no_more_than_is_known(family):
+    world = graphdrl.World.random(family, 25, 3, weighted=family == "tree", directed=family == "erdos-renyi")
+    own = Nearest(world)
+    plan = graphdrl.explore(world, "0.7x", policy=own)
+    assert own.states >= len(plan.walk) - 1 > 5
+    assert plan.seen[0] == plan.walk[0] and set(plan.walk) <= set(plan.seen)
+    assert plan.seen_after_step[-1] == len(plan.seen) <= world.valid_count
+    if family != "erdos-renyi":
+        nearest = graphdrl.explore(world, "0.7x", policy="nearest")
+        assert plan.visited == pytest.approx(nearest.visited, abs=3)
+
+
+def test_policies_explore_what_they_know_alone():
+    """Of an explorer given as an object the walk is that of the name, not that of one that knows the map."""
+    world = graphdrl.World.random("geometric", 40, 1)
+    explored = graphdrl.explore(world, "0.7x", policy=graphdrl.Policy.load())
+    assert explored.walk == graphdrl.explore(world, "0.7x", policy="explorer").walk
+    assert explored.walk != graphdrl.plan(world, "0.7x", policy="explorer").walk
+    with pytest.raises(graphdrl.Error, match="directions"):
+        graphdrl.explore(graphdrl.World.from_file("paper:a"), 9, policy=graphdrl.PaperNetwork.random())
+    known = graphdrl.explore(world, "0.7x", policy="search", reveal="all")
+    assert known.walk == graphdrl.plan(world, "0.7x").walk
+    assert known.seen is None and known.seen_after_step is None
+
+
 def test_labels_of_any_kind_come_back(tmp_path):
     graph = nx.Graph()
     labels = ["hall", ("kitchen", 2), frozenset({"attic"}), 3.5, b"cellar", 7]

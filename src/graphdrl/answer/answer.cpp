@@ -10,6 +10,7 @@
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/exact.h"
+#include "graphdrl/planners/planner_policy.h"
 
 namespace graphdrl {
 namespace {
@@ -64,6 +65,8 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   std::unique_ptr<Policy> policy;
   if (request.own_planner) {
     planner = request.own_planner();
+    // On an unknown map it plans on what is known.
+    if (!request.reveal.all()) policy = std::make_unique<PlannerPolicy>(std::move(planner));
   } else if (request.own_policy) {
     policy = request.own_policy();
   } else {

@@ -74,6 +74,12 @@ std::string Reveal::text() const {
   return fmt::format("sight:{}", range_);
 }
 
+Score parse_score(std::string_view text) {
+  if (text == "visited") return Score::kVisited;
+  if (text == "seen") return Score::kSeen;
+  throw Error({.what = "bad score", .expected = "visited or seen", .got = in_quotes(text)});
+}
+
 Discovery::Discovery(std::string name, EdgeKind kind, bool ordered)
     : known_(nothing_known(std::move(name), kind, ordered)), view_(known_) {}
 

@@ -44,6 +44,9 @@ enum class Score {
   kSeen,     // nodes that visits showed
 };
 
+// "visited" or "seen". Throws Error on anything else.
+Score parse_score(std::string_view text);
+
 // A graph that grows by what it is told. It numbers nodes in the order in which they are seen.
 class Discovery {
  public:
