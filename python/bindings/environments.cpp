@@ -1,5 +1,6 @@
 #include "bindings.h"
 #include "graphdrl/env/graph_episodes.h"
+#include "graphdrl/env/unknown_episodes.h"
 #include "graphdrl/nn/feature_episodes.h"
 #include "graphdrl/report/picture.h"
 
@@ -29,20 +30,22 @@ void bind_options(nb::module_& module) {
           "__init__",
           [](EpisodesOptions* self, std::optional<World> world, std::string family, int size, bool weighted,
              bool directed, const std::string& budget, NodeId start, bool coverage_gain, bool return_to_start,
-             int count, bool restarts) {
+             const std::string& reveal, const std::string& score, int count, bool restarts) {
             new (self) EpisodesOptions{
                 .world = std::move(world),
                 .budget = Budget::parse(budget),
                 .family = {.family = std::move(family), .size = size, .weighted = weighted, .directed = directed},
                 .start = start,
                 .episode = {.end = return_to_start ? End::at_start() : End::anywhere(),
-                            .reward = coverage_gain ? RewardKind::kCoverageGain : RewardKind::kVisitPenalty},
+                            .reward = coverage_gain ? RewardKind::kCoverageGain : RewardKind::kVisitPenalty,
+                            .reveal = Reveal::parse(reveal),
+                            .score = parse_score(score)},
                 .count = count,
                 .restarts = restarts};
           },
           nb::kw_only(), nb::arg("world").none(), nb::arg("family"), nb::arg("size"), nb::arg("weighted"),
           nb::arg("directed"), nb::arg("budget"), nb::arg("start"), nb::arg("coverage_gain"),
-          nb::arg("return_to_start"), nb::arg("count"), nb::arg("restarts"),
+          nb::arg("return_to_start"), nb::arg("reveal"), nb::arg("score"), nb::arg("count"), nb::arg("restarts"),
           "A world or, without one, a family; a start of -1 is a random one.");
 }
 
@@ -65,7 +68,7 @@ void bind_episodes(nb::module_& module) {
       .def(
           "world", [](const Episodes& self, int index) { return self.episode(index).world(); }, nb::arg("index"))
       .def(
-          "walk", [](const Episodes& self, int index) { return to_numpy(self.episode(index).walk()); },
+          "walk", [](const Episodes& self, int index) { return to_numpy(self.episode(index).walk_in_world()); },
           nb::arg("index"), nb::rv_policy::automatic)
       .def(
           "spent", [](const Episodes& self, int index) { return self.episode(index).spent(); }, nb::arg("index"))
@@ -103,6 +106,13 @@ void bind_episodes(nb::module_& module) {
       .def(
           "target_rows", [](const FirstVisitEpisodes& self, int index) { return to_numpy(self.target_rows(index)); },
           nb::arg("index"), nb::rv_policy::automatic);
+  nb::class_<UnknownEpisodes, Episodes>(module, "UnknownEpisodes")
+      .def(nb::init<EpisodesOptions, int>(), nb::arg("options"), nb::arg("max_visits"))
+      .def(
+          "graph",
+          [](UnknownEpisodes& self, int index) { return arrays_of(self.graph(index), kUnknownNodeFeatureCount); },
+          nb::arg("index"))
+      .def_prop_ro("seen", [](UnknownEpisodes& self) { return column(self.seen()); });
 }
 
 nb::ndarray<nb::numpy, std::uint8_t, nb::ndim<3>> picture_of(const World& world,
@@ -124,6 +134,7 @@ void bind_environments(nb::module_& module) {
              "A picture of a walk: [rows, columns, 3] pixels.");
   module.attr("GRAPH_NODE_FEATURES") = kGraphNodeFeatureCount;
   module.attr("EXPLORER_NODE_FEATURES") = kExplorerNodeFeatureCount;
+  module.attr("UNKNOWN_NODE_FEATURES") = kUnknownNodeFeatureCount;
   nb::list grids;
   for (const WorldFamily& family : world_families()) {
     if (family.grid) grids.append(nb::str(family.name.data(), family.name.size()));

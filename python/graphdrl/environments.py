@@ -3,6 +3,7 @@
 - `GraphDRL/Grid-v0`: the paper's decision process, directions on a grid.
 - `GraphDRL/Graph-v0`: any graph, an action is a neighbour.
 - `GraphDRL/FirstVisit-v0`: any graph, an action is a walk to an unvisited node.
+- `GraphDRL/Unknown-v0`: any graph, not known beforehand, an action is a walk to a node that was seen.
 """
 
 from __future__ import annotations
@@ -20,19 +21,22 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import Error
-from .checks import LARGEST_INT, flag, listed, one_of, whole_number, wrong
+from .checks import LARGEST_INT, flag, listed, one_of, text, whole_number, wrong
 from .world import Budget, Node, World, array_of, budget_text, flat_of
 
 __all__ = [
     "FIRST_VISIT_ID",
     "GRAPH_ID",
     "GRID_ID",
+    "UNKNOWN_ID",
     "FirstVisitEnv",
     "FirstVisitVectorEnv",
     "GraphEnv",
     "GraphVectorEnv",
     "GridEnv",
     "GridVectorEnv",
+    "UnknownEnv",
+    "UnknownVectorEnv",
 ]
 
 GRID_ID = "GraphDRL/Grid-v0"
@@ -41,6 +45,8 @@ GRAPH_ID = "GraphDRL/Graph-v0"
 """What they know GraphEnv and GraphVectorEnv by."""
 FIRST_VISIT_ID = "GraphDRL/FirstVisit-v0"
 """What they know FirstVisitEnv and FirstVisitVectorEnv by."""
+UNKNOWN_ID = "GraphDRL/Unknown-v0"
+"""What they know UnknownEnv and UnknownVectorEnv by."""
 
 _REWARDS = ("visit_penalty", "coverage_gain")
 _OBSERVATIONS = ("flat", "graph")
@@ -65,6 +71,8 @@ class _Options:
     # Options of those on graphs.
     return_to_start = weighted = directed = False
     observation = "flat"
+    # Of those on maps that are not known.
+    reveal, score = "all", "visited"
 
     @cached_property
     def world(self) -> World | None:
@@ -103,6 +111,8 @@ class _Options:
             start=-1 if self.start is None or self.world is None else self.world.number(self.start),
             coverage_gain=self.reward == "coverage_gain",
             return_to_start=flag(self.return_to_start, "return_to_start"),
+            reveal=text(self.reveal, "reveal"),
+            score=text(self.score, "score"),
             count=count,
             restarts=restarts,
         )
@@ -184,6 +194,21 @@ class FirstVisitOptions(_OnGraphs):
         return self.kind(episodes, -16, 16, _core.EXPLORER_NODE_FEATURES)
 
 
+@dataclass(frozen=True)
+class UnknownOptions(_OnGraphs):
+    """What UnknownEnv takes."""
+
+    reward: str = "coverage_gain"
+    reveal: str = "edges"
+    score: str = "visited"
+    max_visits: int = 16
+
+    def make(self, count: int, restarts: bool) -> _Kind:
+        most = whole_number(self.max_visits, "max_visits", 1, 1000)
+        episodes = _core.UnknownEpisodes(self.for_core(count, restarts), most)
+        return self.kind(episodes, 0, 1, _core.UNKNOWN_NODE_FEATURES)
+
+
 class _Kind:
     """The episodes of an environment, and their spaces."""
 
@@ -205,6 +230,8 @@ class _Kind:
         told = {"visited": self.episodes.visited, "position": self.episodes.positions}
         if self.graph_space is not None:
             told |= {"action_mask": self.episodes.action_masks, "targets": self.episodes.targets}
+        if isinstance(self.episodes, _core.UnknownEpisodes):
+            told["seen"] = self.episodes.seen
         return told
 
 
@@ -603,6 +630,70 @@ class FirstVisitEnv(_Env, options=FirstVisitOptions):
 
 class FirstVisitVectorEnv(_VectorEnv, options=FirstVisitOptions):
     """Many environments as FirstVisitEnv, with its options and flat observations; `gymnasium.make_vec` makes it.
+
+    All episodes are stepped by one call. Steps equal those of Gymnasium's SyncVectorEnv with the same seeds. Graphs and
+    pictures are of single environments alone.
+
+    Args:
+        num_envs: V, how many.
+        copy: if false, observations are one array that every step writes anew. All else is always a copy.
+    """
+
+
+class UnknownEnv(_Env, options=UnknownOptions):
+    """One explorer on a map that it does not know, from first visit to first visit. A: actions, N: nodes seen.
+
+    A visit shows what `reveal` says. An action walks to a node that was seen and not visited, by the cheapest way
+    through visited ones. Where nodes seen count, ground is also every node whose edges are all known, and actions lead
+    to the others.
+
+    Nodes have numbers 0, 1, 2 … in the order in which they were seen, the start first. They say nothing of the world:
+    where there are no cells, nodes seen at once are numbered by chance, anew in each episode. `world` and `walk` are
+    those of the world itself, for whoever looks on.
+
+    Actions: the A nearest first visits, nearest first. A masked action leads nowhere. It costs an edge of mean cost and
+    stays put; where that cannot be paid for, it ends the episode.
+
+    Infos: `seen`, how many nodes; `action_mask`, bool [A]; `targets`, int [A], the number of the node that each action
+    leads to, which is its row in the graph, -1 for nowhere.
+
+    Observation `flat`: Box [7 A + 2] of float32 from 0 to 1: of the node that each action leads to whether there is
+    one, frontier (more edges may lead on), prize (in eight mean prizes), edges known and neighbours visited (both in
+    eight), distance, first visits since it was seen last; the share of the budget that is left; what is left beyond the
+    way to the end. Distances, in mean edges, and first visits are shown as x / (x + 8). Means are of what is known.
+
+    Observation `graph`: spaces.Graph of a row [10] for each node seen: whether an action leads there, the six others
+    after it, visited, current, budget left; and the edges known both ways, with their cost in mean edges, [1].
+
+    Reward `coverage_gain`: the share of all nodes, or of all prizes, that the walk gains; where nodes seen count, of
+    those it shows. Reward `visit_penalty`: the sum over the walk of GraphEnv's.
+
+    An episode terminates where no first visit can be paid for.
+
+    Args:
+        map: a World or the name of a map, grid or graph; by default `paper:a`.
+        budget: in units of cost, or a text as `"1.1x"`: times the number of free nodes, in edges of mean cost.
+        reward: `visit_penalty` or `coverage_gain`.
+        start: a node; by default a random free one.
+        return_to_start: the walk must end where it began. First visits that make that too dear are left out.
+        family: of random worlds instead of `map`, a new one with every `reset`.
+        size: of random worlds: nodes of a graph, cells a side of a grid; by default 20.
+        weighted: of random graphs: edges cost differently.
+        directed: of random graphs: three edges in ten lead one way only.
+        reveal: what a visit shows: `edges`, those of the node; `radius:R`, all within the cost R; `sight:R`, on grids,
+            what straight lines of the length R meet.
+        score: what counts, nodes `visited` or nodes `seen`.
+        max_visits: A, 1 to 1000.
+        observation: `flat` or `graph`.
+        render_mode: `ansi`, `rgb_array` or `human`, of the whole map.
+
+    Raises:
+        Error: both a map and a family, sight without cells, `max_visits` out of range, a bad value of another option.
+    """
+
+
+class UnknownVectorEnv(_VectorEnv, options=UnknownOptions):
+    """Many environments as UnknownEnv, with its options and flat observations; `gymnasium.make_vec` makes it.
 
     All episodes are stepped by one call. Steps equal those of Gymnasium's SyncVectorEnv with the same seeds. Graphs and
     pictures are of single environments alone.

@@ -9,7 +9,7 @@ def register_environments() -> None:
         from gymnasium.envs.registration import register, registry
     except ImportError:
         return
-    for kind in ("Grid", "Graph", "FirstVisit"):
+    for kind in ("Grid", "Graph", "FirstVisit", "Unknown"):
         name = f"GraphDRL/{kind}-v0"
         if name not in registry:
             entries = [f"graphdrl.environments:{kind}{single_or_many}" for single_or_many in ("Env", "VectorEnv")]

@@ -17,6 +17,7 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # render_mode="human" without
 GRID = "GraphDRL/Grid-v0"
 GRAPH = "GraphDRL/Graph-v0"
 FIRST_VISIT = "GraphDRL/FirstVisit-v0"
+UNKNOWN = "GraphDRL/Unknown-v0"
 SETTINGS = [
     (GRID, {}),
     (GRID, {"reward": "coverage_gain", "map": "paper:j"}),
@@ -29,6 +30,11 @@ SETTINGS = [
     (FIRST_VISIT, {}),
     (FIRST_VISIT, {"map": graphdrl.World.random("tree", 14, 1, weighted=True), "return_to_start": True}),
     (FIRST_VISIT, {"family": "barabasi-albert", "size": 18, "weighted": True, "reward": "visit_penalty"}),
+    (UNKNOWN, {}),
+    (UNKNOWN, {"map": "paper:j", "reveal": "sight:2", "score": "seen", "max_visits": 3}),
+    (UNKNOWN, {"family": "geometric", "size": 18, "weighted": True, "return_to_start": True, "reveal": "radius:2"}),
+    (UNKNOWN, {"family": "erdos-renyi", "size": 15, "directed": True, "reward": "visit_penalty"}),
+    (UNKNOWN, {"family": "maze", "size": 9, "reveal": "radius:3", "score": "seen", "return_to_start": True}),
 ]
 MAPS = ["paper:a", "paper:f", "paper:j"]
 
@@ -246,6 +252,49 @@ def test_the_explorer_walks_first_visits(options, returns):
         assert info["visited"] == plan.visited
 
 
+@pytest.mark.parametrize("returns", [False, True])
+def test_an_unknown_map_is_explored_as_plans_explore_it(returns):
+    """The first action of all is the nearest rule; rewards are the share of the nodes it gains."""
+    for seed in range(5):
+        world = graphdrl.World.random("obstacles", 12, seed)
+        start = world.nodes[world.valid_count // 2] if not world.is_grid else tuple(np.argwhere(~world.blocked)[9])
+        options = {"map": world, "budget": "0.8x", "start": start, "return_to_start": returns}
+        env = gymnasium.make(UNKNOWN, **options)
+        observation, info = env.reset(seed=1)
+        terminated, gained, seen = False, 0.0, info["seen"]
+        assert info["position"] == 0
+        while not terminated:
+            assert info["action_mask"][0] and info["targets"][0] < info["seen"]
+            rows = observation[:-2].reshape(-1, 7)
+            assert np.array_equal(rows[:, 0] == 1, info["action_mask"])
+            assert np.all(np.diff(rows[info["action_mask"], 5]) >= 0)
+            observation, reward, terminated, truncated, info = env.step(0)
+            assert not truncated and info["seen"] >= seen
+            gained, seen = gained + reward, info["seen"]
+        plan = graphdrl.explore(world, "0.8x", start, end="start" if returns else None, policy="nearest")
+        walk = env.unwrapped.walk
+        assert walk == plan.walk[: len(walk)]
+        assert gained * world.valid_count + 1 == pytest.approx(plan.visited)
+        assert info["visited"] == plan.visited and info["seen"] == len(plan.seen)
+
+
+def test_the_graph_of_an_unknown_map_grows():
+    world = graphdrl.World.random("geometric", 25, 2, weighted=True)
+    env = gymnasium.make(UNKNOWN, map=world, observation="graph", score="seen", max_visits=2, budget=1e6)
+    observation, info = env.reset(seed=4)
+    gained, terminated, first = 0.0, False, info["seen"]
+    while not terminated:
+        assert len(observation.nodes) == info["seen"] and observation.edge_links.max() < info["seen"]
+        targets = info["targets"][info["action_mask"]]
+        assert sorted(targets) == np.flatnonzero(observation.nodes[:, 0]).tolist()
+        assert np.flatnonzero(observation.nodes[:, 8]).tolist() == [info["position"]]
+        assert observation.nodes[:, 7].sum() == info["visited"]
+        observation, reward, terminated, _, info = env.step(0)
+        gained += reward
+    assert gained * world.valid_count == pytest.approx(info["seen"] - first)
+    assert info["seen"] == world.valid_count
+
+
 def test_masked_actions_cost_an_edge_and_end_what_cannot_pay():
     world = graphdrl.World.from_edges([[0, 1], [1, 2]], [2.0, 4.0], labels=["a", "b", "c"])  # a mean edge costs 3
     for name in (GRAPH, FIRST_VISIT):
@@ -365,6 +414,12 @@ def begun_pair():
         (lambda: gymnasium.make(GRAPH, observation="sound"), "bad observation"),
         (lambda: gymnasium.make(FIRST_VISIT, max_visits=1000), "max_visits"),
         (lambda: gymnasium.make(FIRST_VISIT, budget="much"), "budget"),
+        (lambda: gymnasium.make(UNKNOWN, max_visits=0), "max_visits"),
+        (lambda: gymnasium.make(UNKNOWN, reveal="all"), "bad reveal: expected edges"),
+        (lambda: gymnasium.make(UNKNOWN, reveal="radius:x"), "bad reveal"),
+        (lambda: gymnasium.make(UNKNOWN, reveal=3), "bad reveal: expected text"),
+        (lambda: gymnasium.make(UNKNOWN, score="money"), "bad score: expected visited or seen"),
+        (lambda: gymnasium.make(UNKNOWN, family="tree", reveal="sight:3"), "sight needs a map of cells"),
         (lambda: graphdrl.environments.GraphEnv(family="tree").reset(options={"start": 0}), "random worlds"),
         (lambda: graphdrl.environments.GraphEnv().step(0), "over"),
         (lambda: gymnasium.make(GRID, map=7), "bad map"),

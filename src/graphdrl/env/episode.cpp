@@ -113,6 +113,7 @@ StepResult Episode::enter(NodeId next, double cost) {
   const bool first_visit = visits_before == 0;
   visited_count_ += first_visit;
   position_ = next;
+  const double seen_before = view().total_prize();
   if (first_visit) {
     prize_ += view().prize(next);
     if (!hidden()) {
@@ -128,14 +129,16 @@ StepResult Episode::enter(NodeId next, double cost) {
   spent_ += cost;
   free_moves_ = first_visit || spent_ > spent_before ? 0 : free_moves_ + 1;
   if (first_visit) settle_end();
-  return {.reward = reward_of(blocked, visits_before), .blocked = blocked, .first_visit = first_visit};
+  const double gained = counts_seen() ? view().total_prize() - seen_before : first_visit ? view().prize(next) : 0;
+  return {.reward = reward_of(blocked, visits_before, gained), .blocked = blocked, .first_visit = first_visit};
 }
 
-double Episode::reward_of(bool blocked, std::uint32_t visits_before) const {
+// gained: of what is counted.
+double Episode::reward_of(bool blocked, std::uint32_t visits_before, double gained) const {
   const bool first_visit = visits_before == 0;
   const double bonus = first_visit && terminal() ? kFullCoverageBonus : 0.0;
   if (options_.reward == RewardKind::kCoverageGain) {
-    return first_visit && world_.total_prize() > 0 ? view().prize(position_) / world_.total_prize() + bonus : bonus;
+    return world_.total_prize() > 0 ? gained / world_.total_prize() + bonus : bonus;
   }
   if (first_visit) return kFirstVisitReward + bonus;
   if (!blocked) return kRevisitReward * visits_before;

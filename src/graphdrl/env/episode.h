@@ -13,7 +13,7 @@ namespace graphdrl {
 
 enum class RewardKind {
   kVisitPenalty,  // [paper, eq. 3]
-  kCoverageGain,  // [paper, eq. 2]; where there are prizes, their share of all
+  kCoverageGain,  // [paper, eq. 2]; where there are prizes, their share of all; where what is seen counts, of that
 };
 
 // The defaults are the paper's.
@@ -109,7 +109,7 @@ class Episode {
   void begin_hidden(std::uint64_t number);
   void settle_end();
   StepResult enter(NodeId next, double cost);
-  double reward_of(bool blocked, std::uint32_t visits_before) const;
+  double reward_of(bool blocked, std::uint32_t visits_before, double gained) const;
 
   World world_;
   EpisodeOptions options_;

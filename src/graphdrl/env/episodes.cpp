@@ -103,7 +103,8 @@ void Episodes::begin(int index, NodeId start) {
   const auto nodes = episode.world().valid_nodes();
   if (start == kNoNode) start = options_.start;
   if (start == kNoNode) start = nodes[slot.rng.below(static_cast<std::uint32_t>(nodes.size()))];
-  episode.reset(start);
+  // In each episode the nodes of an unknown world have other numbers.
+  episode.reset(start, episode.hidden() ? slot.rng.next() : 0);
   show_start(index, episode);
   rewards_[index] = 0;
   terminated_[index] = truncated_[index] = false;

@@ -5,39 +5,19 @@
 #include <algorithm>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/env/feature_rows.h"
 
 namespace graphdrl {
 namespace {
 
-constexpr double kMostPrize = 8;  // mean prizes
-constexpr double kDearest = 8;    // mean edges
+constexpr double kDearest = 8;  // mean edges
 constexpr int kMostUnvisited = 8;
-
-float flag(bool value) {
-  return value ? 1.0f : 0.0f;
-}
-
-float prize_of(const View& view, NodeId node) {
-  const double mean = view.total_prize() / view.valid_count();
-  return mean > 0 ? static_cast<float>(std::min(view.prize(node) / mean / kMostPrize, 1.0)) : 0.0f;
-}
-
-float budget_left(const Observation& now) {
-  const double budget = now.task->budget();
-  return budget > 0 ? static_cast<float>(std::clamp(1 - now.spent / budget, 0.0, 1.0)) : 0.0f;
-}
 
 int most_neighbours(const EpisodesOptions& options) {
   if (!options.world) return options.is_grid() ? kDirectionCount : options.most_nodes() - 1;
   int most = 0;
   for (const NodeId node : options.world->valid_nodes()) most = std::max(most, options.world->open().degree(node));
   return most;
-}
-
-// The columns of `row` by name.
-template <typename Feature>
-auto columns(std::span<float> row) {
-  return [row](Feature feature) -> float& { return row[static_cast<std::size_t>(feature)]; };
 }
 
 // The first four columns.
