@@ -8,7 +8,7 @@ import sys
 
 
 class Task(ctypes.Structure):
-    """graphdrl_task of graphdrl_c.h, field by field."""
+    """The first fields of graphdrl_task [graphdrl_c.h]: its size says how many there are."""
 
     _fields_ = (
         ("size", ctypes.c_size_t),

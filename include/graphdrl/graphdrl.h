@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -156,6 +157,24 @@ class Task {
     policy_ = std::move(name);
     return *this;
   }
+  // Explores a map that is not known beforehand: a visit shows "edges", or all within "radius:R", or what "sight:R"
+  // meets. The policy is then pocket, unless it is set.
+  Task& reveal(std::string what) {
+    reveal_ = std::move(what);
+    return *this;
+  }
+  // What an exploration counts: nodes seen instead of nodes visited.
+  Task& count_seen() {
+    counts_seen_ = true;
+    return *this;
+  }
+  // Seconds for each choice of an exploration, of policies that plan.
+  Task& think(double seconds) { return set(task_.think_time_s, seconds); }
+  // Instead of a budget, of an exploration: until nothing is left that is known.
+  Task& until_covered() {
+    task_.relative = 0;
+    return set(task_.budget, std::numeric_limits<double>::infinity());
+  }
   // Called now and then, on the thread that plans. False ends the planning; what it throws comes out of plan().
   Task& progress(std::function<bool(std::int32_t visited, double bound)> told) {
     progress_ = std::move(told);
@@ -181,6 +200,8 @@ class Task {
   graphdrl_task for_call(Call& call) const {
     graphdrl_task task = task_;
     if (!policy_.empty()) task.policy = policy_.c_str();
+    if (!reveal_.empty()) task.reveal = reveal_.c_str();
+    if (counts_seen_) task.score = "seen";
     if (progress_) {
       task.progress_data = &call;
       task.progress = [](std::int32_t visited, double bound, void* data) -> std::int32_t {
@@ -198,6 +219,8 @@ class Task {
 
   graphdrl_task task_;
   std::string policy_;
+  std::string reveal_;
+  bool counts_seen_ = false;
   std::function<bool(std::int32_t, double)> progress_;
 };
 
@@ -215,11 +238,10 @@ class Plan {
   }
 
   // Every step, the start first.
-  std::vector<std::int32_t> walk() const {
-    std::size_t length = 0;
-    const std::int32_t* const nodes = graphdrl_result_walk(handle_.get(), &length);
-    return {nodes, nodes + length};
-  }
+  std::vector<std::int32_t> walk() const { return array(graphdrl_result_walk); }
+  // Of an exploration: the nodes seen, in the order in which they were seen, and how many at each step of the walk.
+  std::vector<std::int32_t> seen() const { return array(graphdrl_result_seen); }
+  std::vector<std::int32_t> seen_after_step() const { return array(graphdrl_result_seen_after_step); }
   std::int32_t visited() const { return graphdrl_result_visited(handle_.get()); }  // valid nodes
   double prize() const { return graphdrl_result_prize(handle_.get()); }
   double cost() const { return graphdrl_result_cost(handle_.get()); }
@@ -231,6 +253,12 @@ class Plan {
   void save(const std::string& path) const { detail::check(graphdrl_result_save(handle_.get(), path.c_str())); }
 
  private:
+  std::vector<std::int32_t> array(const std::int32_t* (*of)(const graphdrl_result*, std::size_t*)) const {
+    std::size_t length = 0;
+    const std::int32_t* const values = of(handle_.get(), &length);
+    return {values, values + length};
+  }
+
   std::shared_ptr<graphdrl_result> handle_;
 };
 

@@ -94,11 +94,16 @@ typedef struct graphdrl_task {
   double relative;            /* above 0: instead, so many times the valid nodes, in edges of mean cost */
   int32_t start;              /* a node or GRAPHDRL_GIVEN */
   int32_t end;                /* a node, GRAPHDRL_GIVEN, GRAPHDRL_ANYWHERE or GRAPHDRL_AT_START */
-  const char* policy;         /* as of `graphdrl plan --policy`; NULL: search */
+  const char* policy;         /* as of `graphdrl plan --policy`; NULL: search, or pocket where reveal is set */
   double time_limit_s;        /* seconds for the plan and its bound; below 0: none */
   uint64_t seed;              /* of the search; 1 at first */
   graphdrl_progress progress; /* or NULL */
   void* progress_data;
+  /* An exploration, as `graphdrl explore` with --reveal, --score and --think-time: */
+  const char*
+      reveal; /* what a visit shows: "edges", "radius:R", "sight:R"; NULL or "all": the map is known beforehand */
+  const char* score;   /* what counts, nodes "visited" or "seen"; NULL: visited */
+  double think_time_s; /* seconds for each choice, of policies that plan; below 0: none */
 } graphdrl_task;
 
 /* Sets the fields that a struct of this size has. */
@@ -108,7 +113,8 @@ static inline void graphdrl_task_init(graphdrl_task* task) {
   graphdrl_task_init_sized(task, sizeof(graphdrl_task));
 }
 
-/* Plans one walk, and bounds it. The result may outlive the world. */
+/* Plans one walk, and bounds it; or explores, where reveal is set. A budget of INFINITY explores until nothing is left
+ * that is known. The result may outlive the world. */
 GRAPHDRL_API graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* task,
                                            graphdrl_result** result);
 
@@ -120,13 +126,19 @@ GRAPHDRL_API graphdrl_status graphdrl_upper_bound(const graphdrl_world* world, c
 /* Every step, the start first; it lives as long as the result. length: set to how many, where it is not NULL. */
 GRAPHDRL_API const int32_t* graphdrl_result_walk(const graphdrl_result* result, size_t* length);
 GRAPHDRL_API int32_t graphdrl_result_visited(const graphdrl_result* result); /* valid nodes, the start included */
-GRAPHDRL_API double graphdrl_result_prize(const graphdrl_result* result);    /* of all nodes visited */
+GRAPHDRL_API double graphdrl_result_prize(const graphdrl_result* result);    /* of all nodes visited, or seen */
 GRAPHDRL_API double graphdrl_result_cost(const graphdrl_result* result);
 GRAPHDRL_API double graphdrl_result_budget(const graphdrl_result* result); /* in units of cost */
-GRAPHDRL_API double graphdrl_result_bound(const graphdrl_result* result);  /* no walk has a higher prize */
+/* No walk has a higher prize, knowing the map; infinite where nodes seen count. */
+GRAPHDRL_API double graphdrl_result_bound(const graphdrl_result* result);
 GRAPHDRL_API int32_t
 graphdrl_result_optimal(const graphdrl_result* result); /* 1 if proved: no walk has a higher prize */
-/* The document of `graphdrl plan --json`; it lives as long as the result. "" if memory ran out. */
+/* Of an exploration the nodes seen, in the order in which they were seen, and how many were seen at each step of the
+ * walk; of other plans NULL. As the walk. */
+GRAPHDRL_API const int32_t* graphdrl_result_seen(const graphdrl_result* result, size_t* length);
+GRAPHDRL_API const int32_t* graphdrl_result_seen_after_step(const graphdrl_result* result, size_t* length);
+/* The document of `graphdrl plan --json`, or of `graphdrl explore --json`; it lives as long as the result. "" if memory
+ * ran out. */
 GRAPHDRL_API const char* graphdrl_result_json(const graphdrl_result* result);
 /* Writes it in the format of the ending, as `graphdrl plan --out`. */
 GRAPHDRL_API graphdrl_status graphdrl_result_save(const graphdrl_result* result, const char* path);

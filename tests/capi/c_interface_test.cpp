@@ -69,6 +69,46 @@ TEST(CInterface, PlansAPathWorkedOutByHand) {
   EXPECT_EQ(bound, 3);
 }
 
+// From 1, where 0 and 2 are seen: to 0, back and on to 2, where 3 is seen.
+TEST(CInterface, ExploresAPathWorkedOutByHand) {
+  Owned<graphdrl_world> world;
+  ASSERT_EQ(make_path(world), GRAPHDRL_DONE);
+  graphdrl_task task = task_of(5);
+  task.start = 1;
+  task.reveal = "edges";
+  Owned<graphdrl_result> result;
+  ASSERT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_DONE) << graphdrl_last_error();
+  const auto array = [&](const auto& of) {
+    std::size_t length = 0;
+    const std::int32_t* const values = of(result.handle, &length);
+    return std::vector<std::int32_t>(values, values + length);
+  };
+  EXPECT_EQ(array(graphdrl_result_walk), (std::vector<std::int32_t>{1, 0, 1, 2}));
+  EXPECT_EQ(array(graphdrl_result_seen_after_step), (std::vector<std::int32_t>{3, 3, 3, 4}));
+  const std::vector<std::int32_t> seen = array(graphdrl_result_seen);
+  ASSERT_EQ(seen.size(), 4u);
+  EXPECT_EQ(seen.front(), 1);
+  EXPECT_EQ(seen.back(), 3);
+  EXPECT_EQ(graphdrl_result_bound(result.handle), 3);
+  EXPECT_NE(std::string(graphdrl_result_json(result.handle)).find("\"policy\":\"pocket\""), std::string::npos);
+}
+
+// What stands behind the fields of an older header is not looked at.
+TEST(CInterface, TakesTheTaskOfAnOlderHeader) {
+  Owned<graphdrl_world> world;
+  ASSERT_EQ(make_path(world), GRAPHDRL_DONE);
+  graphdrl_task task;
+  std::memset(&task, 0x55, sizeof task);
+  graphdrl_task_init_sized(&task, offsetof(graphdrl_task, reveal));
+  task.budget = 7;
+  Owned<graphdrl_result> result;
+  ASSERT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_DONE) << graphdrl_last_error();
+  EXPECT_EQ(graphdrl_result_visited(result.handle), 4);
+  std::size_t length = 7;
+  EXPECT_EQ(graphdrl_result_seen(result.handle, &length), nullptr) << "the map was known";
+  EXPECT_EQ(length, 0u);
+}
+
 TEST(CInterface, ResultsOutliveTheirWorld) {
   Owned<graphdrl_result> result;
   {
@@ -133,6 +173,10 @@ TEST(CInterface, SaysInOneLineWhatIsWrong) {
   refused(plan([&](graphdrl_task& task) { task.policy = "magic"; }), "magic");
   refused(plan([&](graphdrl_task& task) { task.time_limit_s = nan; }), "bad time limit");
   refused(plan([&](graphdrl_task& task) { task.size = 1; }), "bad size of a task");
+  refused(plan([&](graphdrl_task& task) { task.reveal = "smell"; }), "bad reveal");
+  refused(plan([&](graphdrl_task& task) { task.reveal = "sight:3"; }), "sight needs a map of cells");
+  refused(plan([&](graphdrl_task& task) { task.score = "heard"; }), "bad score");
+  refused(plan([&](graphdrl_task& task) { task.think_time_s = nan; }), "think time");
   graphdrl_result* result = nullptr;
   refused(graphdrl_plan(nullptr, nullptr, &result), "NULL");
   refused(graphdrl_set_threads(0), "bad number of threads");
@@ -167,6 +211,7 @@ TEST(CInterface, AnswersForNothing) {
   std::size_t length = 7;
   EXPECT_EQ(graphdrl_result_walk(nullptr, &length), nullptr);
   EXPECT_EQ(length, 0u);
+  EXPECT_EQ(graphdrl_result_seen(nullptr, nullptr), nullptr);
   EXPECT_STREQ(graphdrl_result_json(nullptr), "");
   EXPECT_EQ(graphdrl_result_visited(nullptr), 0);
   EXPECT_STREQ(graphdrl_world_name(nullptr), "");
@@ -196,6 +241,19 @@ TEST(CInterface, StopsOnePlanAndNoOtherThread) {
   done = true;
   stopping.join();
   EXPECT_EQ(beside.walk(), alone.walk());
+}
+
+TEST(CppHeader, ExploresUntilNothingIsLeft) {
+  const auto world = graphdrl::World::from_edges({{0, 1, 1}, {1, 2, 2}, {2, 3, 4}});
+  const graphdrl::Plan visited = graphdrl::plan(world, graphdrl::Task().from(1).until_covered().reveal("edges"));
+  EXPECT_EQ(visited.walk(), (std::vector<std::int32_t>{1, 0, 1, 2, 3}));
+  EXPECT_EQ(visited.seen_after_step(), (std::vector<std::int32_t>{3, 3, 3, 4, 4}));
+  const graphdrl::Plan seen =
+      graphdrl::plan(world, graphdrl::Task(4).from(1).reveal("edges").count_seen().policy("search").think(0.01));
+  EXPECT_EQ(seen.prize(), 4);
+  EXPECT_EQ(seen.seen().size(), 4u);
+  EXPECT_TRUE(std::isinf(seen.bound()));
+  EXPECT_TRUE(graphdrl::plan(world, graphdrl::Task(4)).seen().empty());
 }
 
 TEST(CppHeader, ThrowsWhatGoesWrongAndWhatProgressThrows) {

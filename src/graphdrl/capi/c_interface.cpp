@@ -60,10 +60,19 @@ void require(const void* pointer, const char* what) {
   if (pointer == nullptr) throw Error({.what = std::string(what) + " is NULL"});
 }
 
-Asked asked_of(const World& world, const graphdrl_task& task) {
-  if (task.size < sizeof(graphdrl_task)) {
+// The task with all fields there are, of a caller whose header may have had fewer.
+graphdrl_task whole_task(const graphdrl_task* task) {
+  require(task, "the task");
+  if (task->size < offsetof(graphdrl_task, reveal)) {
     throw Error({.what = "bad size of a task", .expected = "graphdrl_task_init()"});
   }
+  graphdrl_task whole;
+  graphdrl_task_init(&whole);
+  std::memcpy(&whole, task, std::min(task->size, sizeof whole));
+  return whole;
+}
+
+Asked asked_of(const World& world, const graphdrl_task& task) {
   Asked asked;
   if (std::isnan(task.relative)) throw Error({.what = "the budget is not a number", .where = "relative"});
   // Not std::to_string(), which writes what the caller's locale says.
@@ -77,6 +86,17 @@ Asked asked_of(const World& world, const graphdrl_task& task) {
   if (task.end == GRAPHDRL_AT_START) asked.end = End::at_start();
   if (task.end != GRAPHDRL_GIVEN && !asked.end) asked.end = End::at(checked_node(world, task.end, "end"));
   return asked;
+}
+
+PlanRequest request_of(const graphdrl_task& task) {
+  PlanRequest request{.seed = task.seed};
+  if (task.reveal != nullptr) request.reveal = Reveal::parse(task.reveal);
+  if (task.score != nullptr) request.score = parse_score(task.score);
+  if (!(task.think_time_s < 0)) request.think_s = task.think_time_s;
+  if (std::isnan(request.think_s)) throw Error({.what = "the think time is not a number"});
+  if (!request.reveal.all()) request.policy = "pocket";
+  if (task.policy != nullptr) request.policy = task.policy;
+  return request;
 }
 
 std::optional<double> time_limit_of(const graphdrl_task& task) {
@@ -99,6 +119,20 @@ struct graphdrl_result final : graphdrl::Handle {
 };
 
 using namespace graphdrl;
+
+namespace {
+
+// length: set to how many, where it is not NULL. No values: NULL and 0.
+const int32_t* array_of(const std::vector<int32_t>* values, size_t* length) {
+  if (length != nullptr) *length = values != nullptr ? values->size() : 0;
+  return values != nullptr ? values->data() : nullptr;
+}
+
+bool explored(const graphdrl_result* result) {
+  return result != nullptr && !result->answer.reveal.all();
+}
+
+}  // namespace
 
 const char* graphdrl_version() {
   return GRAPHDRL_VERSION;
@@ -203,7 +237,10 @@ void graphdrl_task_init_sized(graphdrl_task* task, size_t size) {
                                .time_limit_s = -1,
                                .seed = 1,
                                .progress = nullptr,
-                               .progress_data = nullptr};
+                               .progress_data = nullptr,
+                               .reveal = nullptr,
+                               .score = nullptr,
+                               .think_time_s = -1};
   std::memcpy(task, &whole, std::min(size, sizeof whole));
 }
 
@@ -212,17 +249,16 @@ graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* 
     require(result, "the place for a result");
     *result = nullptr;
     require(world, "the world");
-    require(task, "the task");
-    const Task asked(world->world, asked_of(world->world, *task));
-    const PlanRequest request{.policy = task->policy != nullptr ? task->policy : "search", .seed = task->seed};
+    const graphdrl_task whole = whole_task(task);
+    const Task asked(world->world, asked_of(world->world, whole));
     // Tells the caller how far it is, until the caller stops it.
     std::atomic<bool> stopped = false;
     const ProgressListener listener = [&](const Progress& news) {
-      if (task->progress == nullptr || stopped) return;
-      stopped = task->progress(news.visited, news.bound, task->progress_data) != 0;
+      if (whole.progress == nullptr || stopped) return;
+      stopped = whole.progress(news.visited, news.bound, whole.progress_data) != 0;
     };
-    *result =
-        new graphdrl_result(make_plan(world->world, asked, request, Clock(time_limit_of(*task), &stopped, &listener)));
+    const Clock clock(time_limit_of(whole), &stopped, &listener);
+    *result = new graphdrl_result(make_plan(world->world, asked, request_of(whole), clock));
   });
 }
 
@@ -230,14 +266,21 @@ graphdrl_status graphdrl_upper_bound(const graphdrl_world* world, const graphdrl
   return guarded([&] {
     require(bound, "the place for a bound");
     require(world, "the world");
-    require(task, "the task");
-    *bound = max_prize(Task(world->world, asked_of(world->world, *task)), Clock(time_limit_of(*task)));
+    const graphdrl_task whole = whole_task(task);
+    *bound = max_prize(Task(world->world, asked_of(world->world, whole)), Clock(time_limit_of(whole)));
   });
 }
 
 const int32_t* graphdrl_result_walk(const graphdrl_result* result, size_t* length) {
-  if (length != nullptr) *length = result != nullptr ? result->answer.plan.walk.size() : 0;
-  return result != nullptr ? result->answer.plan.walk.data() : nullptr;
+  return array_of(result != nullptr ? &result->answer.plan.walk : nullptr, length);
+}
+
+const int32_t* graphdrl_result_seen(const graphdrl_result* result, size_t* length) {
+  return array_of(explored(result) ? &result->answer.discovered.nodes : nullptr, length);
+}
+
+const int32_t* graphdrl_result_seen_after_step(const graphdrl_result* result, size_t* length) {
+  return array_of(explored(result) ? &result->answer.discovered.after_step : nullptr, length);
 }
 
 int32_t graphdrl_result_visited(const graphdrl_result* result) {
