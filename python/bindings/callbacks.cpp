@@ -203,20 +203,24 @@ void bind_callbacks(nb::module_& module) {
       .def_prop_ro(
           "spent", [](const State& state) { return state.get().spent; },
           "What the walk has cost so far, in units of cost.")
-      .def(
+      .def_prop_ro(
           "edges",
           [](const State& state) {
             std::vector<std::int64_t> ends;
-            std::vector<double> costs;
-            for (const Edge& edge : state.get().view().open().edges()) {
-              ends.insert(ends.end(), {edge.a, edge.b});
-              costs.push_back(edge.cost);
-            }
-            return std::tuple(to_numpy(std::move(ends), 2), to_numpy(std::move(costs)));
+            for (const Edge& edge : state.get().view().open().edges()) ends.insert(ends.end(), {edge.a, edge.b});
+            return to_numpy(std::move(ends), 2);
           },
           nb::rv_policy::automatic,
-          "The edges known, without those of blocked nodes: from and to, [E, 2], int64; what each costs, [E], float64. "
-          "In an undirected graph they lead both ways.")
+          "The edges known, without those of blocked nodes, from and to; in an undirected graph they lead both ways. "
+          "Shape [E, 2], int64.")
+      .def_prop_ro(
+          "edge_costs",
+          [](const State& state) {
+            std::vector<double> costs;
+            for (const Edge& edge : state.get().view().open().edges()) costs.push_back(edge.cost);
+            return to_numpy(std::move(costs));
+          },
+          nb::rv_policy::automatic, "What each of these edges costs. Shape [E], float64.")
       .def_prop_ro(
           "prizes",
           [](const State& state) {
@@ -247,8 +251,7 @@ void bind_callbacks(nb::module_& module) {
             return to_numpy(std::move(visits));
           },
           nb::rv_policy::automatic,
-          "When each node was last seen: later is more, by 1 for each first visit. 0 of a known map. Shape [N], "
-          "uint32.");
+          "When each node was last seen, counted in first visits; 0 of a known map. Shape [N], uint32.");
 }
 
 }  // namespace graphdrl::python

@@ -117,13 +117,12 @@ class Nearest:
 
     def __call__(self, state):
         self.states += 1
-        ends, costs = state.edges()
         assert state.walk[0] == 0 and state.walk[-1] == state.position
         assert len(state.visits) == len(state.prizes) == len(state.seen_at)
         assert not set(state.frontier) & set(np.flatnonzero(state.visits))
         graph = nx.DiGraph() if self.world.directed else nx.Graph()
         graph.add_nodes_from(range(len(state.visits)))
-        graph.add_weighted_edges_from((int(a), int(b), c) for (a, b), c in zip(ends, costs))
+        graph.add_weighted_edges_from((*edge, cost) for edge, cost in zip(state.edges.tolist(), state.edge_costs))
         assert set(state.moves) <= set(graph[state.position])
         visited = set(np.flatnonzero(state.visits).tolist())
         assert not [edge for edge in graph.edges if not visited & set(edge)]  # visits alone show edges
