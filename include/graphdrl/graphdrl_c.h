@@ -100,8 +100,7 @@ typedef struct graphdrl_task {
   graphdrl_progress progress; /* or NULL */
   void* progress_data;
   /* An exploration, as `graphdrl explore` with --reveal, --score and --think-time: */
-  const char*
-      reveal; /* what a visit shows: "edges", "radius:R", "sight:R"; NULL or "all": the map is known beforehand */
+  const char* reveal;  /* what a visit shows: "edges", "radius:R" or "sight:R"; NULL: all is known beforehand */
   const char* score;   /* what counts, nodes "visited" or "seen"; NULL: visited */
   double think_time_s; /* seconds for each choice, of policies that plan; below 0: none */
 } graphdrl_task;
