@@ -113,7 +113,7 @@ StepResult Episode::enter(NodeId next, double cost) {
   const bool first_visit = visits_before == 0;
   visited_count_ += first_visit;
   position_ = next;
-  const double seen_before = view().total_prize();
+  const double seen_before = counts_seen() ? view().total_prize() : 0;
   if (first_visit) {
     prize_ += view().prize(next);
     if (!hidden()) {
