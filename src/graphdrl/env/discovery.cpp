@@ -23,6 +23,20 @@ void shuffle(std::vector<NodeId>& nodes, Rng& rng) {
   for (int left = static_cast<int>(nodes.size()); left > 1; --left) std::swap(nodes[rng.index(left)], nodes[left - 1]);
 }
 
+// Where straight lines of a length end, from the cell where they begin. Those that end in the same cell are one.
+std::vector<Cell> rays_within(double range, const GridMap& map) {
+  const double cells = std::min(range / (map.frame ? map.frame->cell_size : 1.0),
+                                static_cast<double>(map.rows + map.cols));
+  std::vector<Cell> rays;
+  for (int ray = 0; ray < kRaysAround; ++ray) {
+    const double angle = 2 * std::numbers::pi * ray / kRaysAround;
+    const Cell end = {static_cast<int>(std::lround(cells * std::sin(angle))),
+                      static_cast<int>(std::lround(cells * std::cos(angle)))};
+    if (rays.empty() || end != rays.back()) rays.push_back(end);
+  }
+  return rays;
+}
+
 std::shared_ptr<Known> nothing_known(std::string name, EdgeKind kind, bool ordered) {
   auto known = std::make_shared<Known>();
   known->name = std::move(name);
@@ -210,6 +224,7 @@ HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, 
       throw Error({.what = "sight needs a map of cells", .got = reveal.text(), .where = world.name()});
     }
     seen_cells_.resize(world.node_count());
+    rays_ = rays_within(reveal.range(), *world.map());
   }
   visit(see(start));
 }
@@ -296,8 +311,6 @@ void HiddenWorld::show_radius(NodeId node) {
 void HiddenWorld::show_sight(NodeId node) {
   const GridMap& map = *world_.map();
   const Cell here = map.cell(in_world_[node]);
-  const double cells =
-      std::min(reveal_.range() / (map.frame ? map.frame->cell_size : 1.0), static_cast<double>(map.rows + map.cols));
   std::vector<NodeId> fresh;
   const auto look_at = [&](const Cell& cell) {
     const NodeId seen = map.node(cell);
@@ -308,10 +321,7 @@ void HiddenWorld::show_sight(NodeId node) {
     return map.is_free(cell);
   };
   look_at(here);
-  for (int ray = 0; ray < kRaysAround; ++ray) {
-    const double angle = 2 * std::numbers::pi * ray / kRaysAround;
-    const int rows = static_cast<int>(std::lround(cells * std::sin(angle)));
-    const int cols = static_cast<int>(std::lround(cells * std::cos(angle)));
+  for (const auto& [rows, cols] : rays_) {
     const int steps = std::max(std::abs(rows), std::abs(cols));
     for (int step = 1; step <= steps; ++step) {
       const Cell cell = {here.row + static_cast<int>(std::lround(static_cast<double>(rows) * step / steps)),
