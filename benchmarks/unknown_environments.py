@@ -50,7 +50,8 @@ def main():
             infos = [one[2] for one in rounds]
         ours, theirs = map(statistics.median, speeds)
         name = f"{options['map'].name}, {options['reveal']}, {options.get('score', 'visited')}"
-        print(f"{name}: ours {ours / 1e3:.0f}, SyncVectorEnv {theirs / 1e3:.1f} thousand steps/s, ratio {ours / theirs:.0f}")
+        rates = f"ours {ours / 1e3:.0f}, SyncVectorEnv {theirs / 1e3:.1f} thousand steps/s"
+        print(f"{name}: {rates}, ratio {ours / theirs:.0f}")
 
 
 if __name__ == "__main__":
