@@ -25,8 +25,8 @@ void shuffle(std::vector<NodeId>& nodes, Rng& rng) {
 
 // Where straight lines of a length end, from the cell where they begin. Those that end in the same cell are one.
 std::vector<Cell> rays_within(double range, const GridMap& map) {
-  const double cells = std::min(range / (map.frame ? map.frame->cell_size : 1.0),
-                                static_cast<double>(map.rows + map.cols));
+  const double cells =
+      std::min(range / (map.frame ? map.frame->cell_size : 1.0), static_cast<double>(map.rows + map.cols));
   std::vector<Cell> rays;
   for (int ray = 0; ray < kRaysAround; ++ray) {
     const double angle = 2 * std::numbers::pi * ray / kRaysAround;

@@ -118,10 +118,10 @@ class HiddenWorld {
   Score score_;
   Rng rng_;
   Discovery discovery_;
-  std::vector<NodeId> in_world_;   // [seen]
-  std::vector<NodeId> known_as_;   // [N of the world]
-  std::vector<bool> seen_cells_;   // [cells], obstacles too; of sight
-  std::vector<Cell> rays_;         // of sight: where lines end, from the position
+  std::vector<NodeId> in_world_;  // [seen]
+  std::vector<NodeId> known_as_;  // [N of the world]
+  std::vector<bool> seen_cells_;  // [cells], obstacles too; of sight
+  std::vector<Cell> rays_;        // of sight: where lines end, from the position
   NodeSet ground_;
   NearestFirst search_;
 };

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kMostScanned = 100;  // edges looked at around a first visit
 constexpr int kMostScannedOfPart = 400;
-constexpr int kMostOfPart = 64;    // frontier nodes of a part that are counted
-constexpr int kFarthest = 4;       // known steps from a first visit that are looked at
+constexpr int kMostOfPart = 64;  // frontier nodes of a part that are counted
+constexpr int kFarthest = 4;     // known steps from a first visit that are looked at
 constexpr double kAboutAsNear = 1 + 1e-9;
 
 float logarithm(double count) {
