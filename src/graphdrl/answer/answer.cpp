@@ -63,10 +63,10 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
                 .score = request.score};
   std::unique_ptr<Planner> planner;
   std::unique_ptr<Policy> policy;
-  if (request.own_planner) {
+  if (request.own_planner && request.reveal.all()) {
     planner = request.own_planner();
-    // On an unknown map it plans on what is known.
-    if (!request.reveal.all()) policy = std::make_unique<PlannerPolicy>(std::move(planner));
+  } else if (request.own_planner) {
+    policy = std::make_unique<PlannerPolicy>(request.own_planner());  // on what is known
   } else if (request.own_policy) {
     policy = request.own_policy();
   } else {

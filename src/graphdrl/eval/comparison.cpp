@@ -245,6 +245,7 @@ std::vector<FamilyRow> summarise_families(std::span<const ComparisonRow> rows,
       if (maps.empty() || !(maps.front()->*what)) return std::nullopt;
       if (maps.size() == 1) return maps.front()->*what;
       std::vector<double> means;
+      means.reserve(maps.size());
       for (const ComparisonRow* const row : maps) means.push_back((row->*what)->mean);
       return summarise(means);
     };

@@ -18,18 +18,6 @@ float logarithm(double count) {
   return static_cast<float>(std::log1p(std::max(count, 0.0)));
 }
 
-// A row under way.
-class FeatureRow {
- public:
-  FeatureRow(std::vector<float>& rows, int width) : rows_(rows), first_(rows.size()) { rows.reserve(first_ + width); }
-  void add(double value) { rows_.push_back(static_cast<float>(value)); }
-  std::size_t size() const { return rows_.size() - first_; }
-
- private:
-  std::vector<float>& rows_;
-  std::size_t first_;
-};
-
 // What is known around a first visit.
 struct Around {
   int met = 0;
@@ -162,35 +150,23 @@ void find_visits(const Exploration& now, NearestFirst& search, OnlineScratch& sc
   visits.resize(kOnlineVisits);
 }
 
-}  // namespace
+// What all rows of a decision share.
+struct Common {
+  double unit;         // a mean edge
+  double free;         // to spend
+  bool unlimited;      // no budget
+  double mean_degree;  // seen so far
+  double nearest;      // cost
+  int least_met;       // visited neighbours of a first visit
+  int most_met;
+};
 
-std::span<const FirstVisit> encode_online(const Exploration& now, double budget, double spent, OnlineScratch& scratch,
-                                          NearestFirst& search, std::vector<float>& rows) {
-  find_visits(now, search, scratch);
+std::vector<Around> look_around(const Exploration& now, OnlineScratch& scratch) {
   const std::vector<FirstVisit>& visits = scratch.visits;
-  if (visits.empty()) return visits;
-  const View& view = now.view();
-  const Census& census = view.census();
-  const double unit = view.open().mean_cost();
-  const double free = now.free_to_spend();
-  const bool unlimited = budget >= 0.01 * kMaxSteps * unit;  // as Task makes it of an infinite one
-  const double nodes = std::max(census.nodes, 1);
-  const double mean_degree = std::max(census.degrees / nodes, 1.0);
-  const auto version = static_cast<double>(view.version());
-
-  double nearest = kNoLimit;
-  double oldest = version;
   std::vector<Around> around;
+  around.reserve(visits.size());
   Surroundings surroundings(now, scratch);
-  int least_met = std::numeric_limits<int>::max();
-  int most_met = 0;
-  for (const FirstVisit& visit : visits) {
-    nearest = std::min(nearest, visit.cost);
-    around.push_back(surroundings.of(visit.node));
-    least_met = std::min(least_met, around.back().met);
-    most_met = std::max(most_met, around.back().met);
-    oldest = std::min<double>(oldest, view.first_seen(visit.node));
-  }
+  for (const FirstVisit& visit : visits) around.push_back(surroundings.of(visit.node));
   for (std::size_t i = 0; i < visits.size(); ++i) {
     if (around[i].part > 0) continue;
     const int part = surroundings.part_of(visits[i].node);
@@ -198,66 +174,111 @@ std::span<const FirstVisit> encode_online(const Exploration& now, double budget,
       if (around[j].part == 0 && surroundings.in_part(visits[j].node)) around[j].part = part;
     }
   }
+  return around;
+}
 
-  std::array<float, kOnlineMapFeatureCount> of_map{};
-  {
-    const double variance = std::max(0.0, census.squared_degrees / nodes - mean_degree * mean_degree);
-    const double visited = now.ground_count();
-    std::size_t at = 0;
-    const auto add = [&](double value) { of_map[at++] = static_cast<float>(value); };
-    add(unlimited || budget <= 0 ? 1 : free / budget);
-    add(std::log(mean_degree) - 1);
-    add(std::sqrt(variance) / mean_degree);
-    add(census.pairs > 0 ? census.closed_pairs / census.pairs : 0);
-    add(census.dead_ends / nodes);
-    add((census.met - nodes + 1) / nodes / mean_degree);
-    add(logarithm(view.frontier_count() / visited));
-    add(spent > 0 ? std::min(visited * unit / spent, 2.0) : 1);
-    add(logarithm(visited) / 5);
-    add(census.low / nodes);
-    add(unlimited ? 1.2 : logarithm(free / unit) / 6);
-    add(census.meetings / nodes);
-    add((version - oldest) / version);
-    add(unlimited);
-    add(!now.task().ends_anywhere());
-  }
-
+Common measure(const Exploration& now, double budget, std::span<const FirstVisit> visits,
+               std::span<const Around> around) {
+  const Census& census = now.view().census();
+  const double unit = now.view().open().mean_cost();
+  Common common{.unit = unit,
+                .free = now.free_to_spend(),
+                .unlimited = budget >= 0.01 * kMaxSteps * unit,  // as Task makes it of an infinite one
+                .mean_degree = std::max(census.degrees / std::max(census.nodes, 1), 1.0),
+                .nearest = kNoLimit,
+                .least_met = around.front().met,
+                .most_met = around.front().met};
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    const FirstVisit& visit = visits[i];
-    const Around& near = around[i];
-    const double first_seen = view.first_seen(visit.node);
-    const double seen = view.seen_at(visit.node);
-    int later = 0;
-    int found_later = 0;
-    for (const FirstVisit& other : visits) {
-      later += view.seen_at(other.node) > seen;
-      found_later += view.first_seen(other.node) > first_seen;
-    }
-    const double cost = std::max(visit.cost, 1e-9 * unit);
-    FeatureRow row(rows, kOnlineFeatureCount);
-    row.add(std::min((visit.cost - nearest) / unit, 10.0) / 3);
-    row.add(std::min(std::log(cost / std::max(nearest, 1e-9 * unit)), 4.0));
-    row.add(visit.cost <= nearest * kAboutAsNear);
-    row.add(std::log(std::max(near.met, 1)));
-    row.add(most_met > least_met ? static_cast<double>(near.met - least_met) / (most_met - least_met) : 0);
-    row.add(near.met / mean_degree);
-    row.add(std::max(0.0, mean_degree - near.met) / 3);
-    row.add(1.0 / (1 + later));
-    row.add(1.0 / (1 + found_later));
-    row.add(logarithm(version - seen) / 2);
-    row.add(logarithm(version - first_seen) / 2);
-    row.add(first_seen == version);
-    row.add(logarithm(near.near_2) / 2);
-    row.add(logarithm(near.near_4) / 2);
-    row.add(near.to_next / 5.0);
-    row.add(std::log(near.part) / 3);
-    row.add(std::min(1.0, static_cast<double>(near.part) / std::max(view.frontier_count(), 1)));
-    row.add(std::log(std::max(near.least_degree, 1)));
-    row.add(std::log(std::max(near.most_siblings, 1)) / 2);
-    row.add(logarithm(near.dense) / 2);
-    row.add(unlimited || free <= 0 ? 0 : std::min(visit.cost / free, 1.0));
-    row.add(std::tanh((first_seen - view.first_seen(now.position())) / 8));
-    for (const float value : of_map) row.add(value);
+    common.nearest = std::min(common.nearest, visits[i].cost);
+    common.least_met = std::min(common.least_met, around[i].met);
+    common.most_met = std::max(common.most_met, around[i].met);
+  }
+  return common;
+}
+
+void add_map_features(const Exploration& now, double budget, double spent, const Common& common,
+                      std::span<const FirstVisit> visits, std::vector<float>& row) {
+  const View& view = now.view();
+  const Census& census = view.census();
+  const double nodes = std::max(census.nodes, 1);
+  const double degree = common.mean_degree;
+  const double variance = std::max(0.0, census.squared_degrees / nodes - degree * degree);
+  const double visited = now.ground_count();
+  const auto version = static_cast<double>(view.version());
+  double oldest = version;
+  for (const FirstVisit& visit : visits) oldest = std::min<double>(oldest, view.first_seen(visit.node));
+  const auto add = [&](double value) { row.push_back(static_cast<float>(value)); };
+  add(common.unlimited || budget <= 0 ? 1 : common.free / budget);
+  add(std::log(degree) - 1);
+  add(std::sqrt(variance) / degree);
+  add(census.pairs > 0 ? census.closed_pairs / census.pairs : 0);
+  add(census.dead_ends / nodes);
+  add((census.met - nodes + 1) / nodes / degree);
+  add(logarithm(view.frontier_count() / visited));
+  add(spent > 0 ? std::min(visited * common.unit / spent, 2.0) : 1);
+  add(logarithm(visited) / 5);
+  add(census.low / nodes);
+  add(common.unlimited ? 1.2 : logarithm(common.free / common.unit) / 6);
+  add(census.meetings / nodes);
+  add((version - oldest) / version);
+  add(common.unlimited);
+  add(!now.task().ends_anywhere());
+}
+
+void add_visit_features(const Exploration& now, const Common& common, const FirstVisit& visit, const Around& near,
+                        std::span<const FirstVisit> visits, std::vector<float>& row) {
+  const View& view = now.view();
+  const double unit = common.unit;
+  const double first_seen = view.first_seen(visit.node);
+  const double seen = view.seen_at(visit.node);
+  const auto version = static_cast<double>(view.version());
+  int later = 0;
+  int found_later = 0;
+  for (const FirstVisit& other : visits) {
+    later += view.seen_at(other.node) > seen;
+    found_later += view.first_seen(other.node) > first_seen;
+  }
+  const double least = 1e-9 * unit;
+  const int spread = common.most_met - common.least_met;
+  const auto add = [&](double value) { row.push_back(static_cast<float>(value)); };
+  add(std::min((visit.cost - common.nearest) / unit, 10.0) / 3);
+  add(std::min(std::log(std::max(visit.cost, least) / std::max(common.nearest, least)), 4.0));
+  add(visit.cost <= common.nearest * kAboutAsNear);
+  add(std::log(std::max(near.met, 1)));
+  add(spread > 0 ? static_cast<double>(near.met - common.least_met) / spread : 0);
+  add(near.met / common.mean_degree);
+  add(std::max(0.0, common.mean_degree - near.met) / 3);
+  add(1.0 / (1 + later));
+  add(1.0 / (1 + found_later));
+  add(logarithm(version - seen) / 2);
+  add(logarithm(version - first_seen) / 2);
+  add(first_seen == version);
+  add(logarithm(near.near_2) / 2);
+  add(logarithm(near.near_4) / 2);
+  add(near.to_next / 5.0);
+  add(std::log(near.part) / 3);
+  add(std::min(1.0, static_cast<double>(near.part) / std::max(view.frontier_count(), 1)));
+  add(std::log(std::max(near.least_degree, 1)));
+  add(std::log(std::max(near.most_siblings, 1)) / 2);
+  add(logarithm(near.dense) / 2);
+  add(common.unlimited || common.free <= 0 ? 0 : std::min(visit.cost / common.free, 1.0));
+  add(std::tanh((first_seen - view.first_seen(now.position())) / 8));
+}
+
+}  // namespace
+
+std::span<const FirstVisit> encode_online(const Exploration& now, double budget, double spent, OnlineScratch& scratch,
+                                          NearestFirst& search, std::vector<float>& rows) {
+  find_visits(now, search, scratch);
+  const std::span<const FirstVisit> visits = scratch.visits;
+  if (visits.empty()) return visits;
+  const std::vector<Around> around = look_around(now, scratch);
+  const Common common = measure(now, budget, visits, around);
+  std::vector<float> of_map;
+  add_map_features(now, budget, spent, common, visits, of_map);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    add_visit_features(now, common, visits[i], around[i], visits, rows);
+    rows.insert(rows.end(), of_map.begin(), of_map.end());
   }
   return visits;
 }
