@@ -16,8 +16,8 @@ import pytest
 from conftest import BIN, ROOT, python_blocks
 
 COMMANDS = [
-    *["plan", "check", "evaluate", "report", "maps info", "maps show", "maps convert", "maps generate", "train"],
-    *["inspect", "export", "results", "tune", "bench", "completion"],
+    *["plan", "explore", "check", "evaluate", "report", "maps info", "maps show", "maps convert", "maps generate"],
+    *["train", "inspect", "export", "results", "tune", "bench", "completion"],
 ]
 
 
@@ -50,7 +50,7 @@ def test_commands_of_the_readme_run(tmp_path):
     block = first[1] + "\n" + then[1]
     commands = [re.sub(r"\S+graphdrl |\$graphdrl ", "graphdrl ", line.split(" # ")[0]) for line in block.splitlines()]
     shown = [" ".join(command.split()) for command in re.findall(r"`(graphdrl (?:maps generate|plan)[^`]*)`", text)]
-    assert len(commands) == 8 and len(shown) == 2
+    assert len(commands) == 9 and len(shown) == 2
     printed = run_commands(commands + shown, tmp_path)
     assert printed[1] == first[2]
 
