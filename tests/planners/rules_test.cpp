@@ -64,13 +64,33 @@ TEST(RulePolicy, TiesGoAnywhereElse) {
   for (int node = 1; node < 4; ++node) EXPECT_GT(first[node], 15) << node;
 }
 
-// explore_lite goes past one near cell to a large frontier.
+// From 2 node 3 is a little nearer than the eight leaves of the hub, which are worth more.
 TEST(RulePolicy, FrontierWeighsDistanceAgainstSize) {
-  std::vector<Edge> edges = {{0, 1}, {0, 2, 1.5}, {2, 3, 1}};
-  for (NodeId node = 4; node < 12; ++node) edges.push_back({2, node, 1});
+  std::vector<Edge> edges = {{0, 1, 1}, {1, 2, 1}, {1, 3, 2}};
+  for (NodeId leaf = 4; leaf < 12; ++leaf) edges.push_back({2, leaf, 3.2});
   const World world = graph_world(12, edges);
-  const std::vector<NodeId> walk = explored(world, Rule::kFrontier, 40);
-  EXPECT_EQ(std::ranges::find(walk, 1) - walk.begin() > 3, walk[1] == 2) << "1 waits once the star is seen";
+  EXPECT_GE(explored(world, Rule::kFrontier, 60)[3], 4);
+  EXPECT_EQ(explored(world, Rule::kNearest, 60)[3], 1);
+}
+
+// Walks of one unknown map begin with the same numbers, whatever is behind them.
+TEST(RulePolicy, WalksManyUnknownMapsSideBySideAsOneByOne) {
+  Rng rng(9);
+  std::vector<Edge> edges;
+  for (NodeId node = 1; node < 40; ++node) edges.push_back({node, rng.index(node)});
+  for (int i = 0; i < 25; ++i) edges.push_back({i, i + 1 + rng.index(14), 2});
+  const World world("graph", Graph::from_edges(40, edges), std::vector<bool>(40));
+  const Episode episode(world, Task(world, 0, 45),
+                        {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges")});
+  const std::vector<NodeId> starts(64, 0);  // a block of eval/rollout
+  for (const Rule rule : {Rule::kNearest, Rule::kDepthFirst, Rule::kPocket}) {
+    RulePolicy together(rule);
+    const auto results = roll_out(episode, starts, together);
+    for (int i = 0; i < std::ssize(starts); ++i) {
+      RulePolicy alone(rule);
+      EXPECT_EQ(roll_out(episode, {&starts[i], 1}, alone, {}, {&i, 1}).front().walk, results[i].walk);
+    }
+  }
 }
 
 }  // namespace

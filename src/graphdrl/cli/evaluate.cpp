@@ -78,7 +78,7 @@ void evaluate(const EvaluateOptions& options) {
   ComparisonOptions comparison = options.comparison;
   if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
   comparison.reveal = Reveal::parse(options.reveal);
-  comparison.score = options.score == "seen" ? Score::kSeen : Score::kVisited;
+  comparison.score = parse_score(options.score);
   if (!comparison.reveal.all() && comparison.policies == kLadder) comparison.policies = kOnlineLadder;
   std::vector<World> worlds;
   for (const std::string& maps : options.maps) {

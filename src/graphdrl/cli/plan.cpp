@@ -83,7 +83,7 @@ void plan(const PlanOptions& options) {
   const Task task(world, asked);
   PlanRequest request = options.request;
   request.reveal = Reveal::parse(options.reveal);
-  request.score = options.score == "seen" ? Score::kSeen : Score::kVisited;
+  request.score = parse_score(options.score);
   if (options.think_time_s) request.think_s = *options.think_time_s;
   for (const std::string& file : options.out) check_plan_file(world, file);
   catch_stop_signals();  // the best walk so far is printed

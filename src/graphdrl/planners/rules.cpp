@@ -64,7 +64,8 @@ void FirstVisitPolicy::act(std::span<const Observation> observations, std::span<
 }
 
 int FirstVisitPolicy::act_on(const Observation& now) {
-  auto trip = std::ranges::find(trips_, now.walk_hash, &Trip::hash);
+  auto trip = std::ranges::find_if(
+      trips_, [&](const Trip& one) { return one.hash == now.walk_hash && one.view == now.view(); });
   if (trip == trips_.end() || trip->way.empty() || trip->version != now.view().version()) {
     const Exploration exploration(now, now.ground());
     NodeId goal = choose(exploration, now);
@@ -76,9 +77,11 @@ int FirstVisitPolicy::act_on(const Observation& now) {
       });
       goal = end;
     }
-    if (trip == trips_.end()) {
-      if (trips_.size() < kMostTrips) trips_.emplace_back();
-      trip = trips_.begin() + (trips_.size() < kMostTrips ? std::ssize(trips_) - 1 : oldest_++ % kMostTrips);
+    if (trip == trips_.end() && trips_.size() < kMostTrips) {
+      trip = trips_.insert(trips_.end(), Trip{.view = now.view(), .version = 0, .hash = 0});
+    } else if (trip == trips_.end()) {
+      trip = trips_.begin() + static_cast<std::ptrdiff_t>(oldest_++ % kMostTrips);
+      trip->view = now.view();
     }
     trip->version = now.view().version();
     trip->way.clear();

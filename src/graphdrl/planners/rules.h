@@ -24,9 +24,10 @@ class FirstVisitPolicy : public Policy {
  private:
   // Under way to what was chosen.
   struct Trip {
-    std::uint64_t hash = 0;     // of the walk so far
-    std::uint64_t version = 0;  // of what was known then
-    std::vector<NodeId> way;    // what is left of it, the next step last
+    View view;                     // of the walk: walks of unknown maps may have the same numbers
+    std::uint64_t version;         // of what was known then
+    std::uint64_t hash;            // of the walk so far
+    std::vector<NodeId> way = {};  // what is left of it, the next step last
   };
 
   int act_on(const Observation& now);
