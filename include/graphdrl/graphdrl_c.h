@@ -94,7 +94,7 @@ typedef struct graphdrl_task {
   double relative;            /* above 0: instead, so many times the valid nodes, in edges of mean cost */
   int32_t start;              /* a node or GRAPHDRL_GIVEN */
   int32_t end;                /* a node, GRAPHDRL_GIVEN, GRAPHDRL_ANYWHERE or GRAPHDRL_AT_START */
-  const char* policy;         /* as of `graphdrl plan --policy`; NULL: search, or pocket where reveal is set */
+  const char* policy;         /* as of `graphdrl plan --policy`; NULL: search, or explorer where reveal is set */
   double time_limit_s;        /* seconds for the plan and its bound; below 0: none */
   uint64_t seed;              /* of the search; 1 at first */
   graphdrl_progress progress; /* or NULL */

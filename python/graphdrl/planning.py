@@ -252,7 +252,7 @@ def explore(
     budget: Budget | None = None,
     start: Node | None = None,
     end: Node | None = None,
-    policy: str | Policy | OwnPolicy = "pocket",
+    policy: str | Policy | OwnPolicy = "explorer",
     *,
     reveal: str = "edges",
     score: str = "visited",

@@ -90,7 +90,7 @@ TEST(CInterface, ExploresAPathWorkedOutByHand) {
   EXPECT_EQ(seen.front(), 1);
   EXPECT_EQ(seen.back(), 3);
   EXPECT_EQ(graphdrl_result_bound(result.handle), 3);
-  EXPECT_NE(std::string(graphdrl_result_json(result.handle)).find("\"policy\":\"pocket\""), std::string::npos);
+  EXPECT_NE(std::string(graphdrl_result_json(result.handle)).find("\"policy\":\"explorer\""), std::string::npos);
 }
 
 // What stands behind the fields of an older header is not looked at.

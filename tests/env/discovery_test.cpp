@@ -175,7 +175,7 @@ TEST(HiddenWorld, GivesNumbersThatTellNothing) {
   const World in_order = hidden_graph(kSide * kSide, edges);
   for (Edge& edge : edges) edge = {renamed[edge.a], renamed[edge.b]};
   const World shuffled = hidden_graph(kSide * kSide, edges);
-  for (const char* const name : {"nearest", "dfs", "pocket", "open"}) {
+  for (const char* const name : {"nearest", "dfs", "pocket", "open", "explorer"}) {
     const auto mean = [&](const World& world, NodeId start) {
       const auto policy = make_online_policy(parse_policy(name), 1);
       Episode episode(world, Task(world, start, 40),

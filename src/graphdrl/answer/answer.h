@@ -30,6 +30,8 @@ struct Answer {
   int max_visited() const { return static_cast<int>(std::clamp<double>(plan.bound, 0, world.valid_count())); }
 };
 
+inline constexpr const char* kOnlinePolicy = "explorer";  // where the map is not known and nobody asks for another
+
 struct PlanRequest {
   std::string policy = "search";                // as parse_policy() takes it
   std::uint64_t seed = 1;                       // of `search` and of random policies

@@ -11,7 +11,7 @@ namespace graphdrl {
 namespace {
 
 const std::vector<std::string> kLadder = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
-const std::vector<std::string> kOnlineLadder = {"random-walk", "dfs", "nearest", "pocket", "open"};
+const std::vector<std::string> kOnlineLadder = {"random-walk", "dfs", "nearest", "pocket", "open", "explorer"};
 
 struct EvaluateOptions {
   std::vector<std::string> maps = {"paper"};

@@ -163,7 +163,7 @@ void add_explore_command(CLI::App& app) {
       "explore", "Explore a map that is not known beforehand, and say what knowing it would have brought");
   const auto options = std::make_shared<PlanOptions>();
   options->reveal = "edges";
-  options->request.policy = "pocket";
+  options->request.policy = kOnlinePolicy;
   add_shared_options(command, *options);
   add_text_option(
       command, "--reveal", options->reveal, "R",

@@ -12,7 +12,6 @@ constexpr int kMostScanned = 100;  // edges looked at around a first visit
 constexpr int kMostScannedOfPart = 400;
 constexpr int kMostOfPart = 64;  // frontier nodes of a part that are counted
 constexpr int kFarthest = 4;     // known steps from a first visit that are looked at
-constexpr double kAboutAsNear = 1 + 1e-9;
 
 float logarithm(double count) {
   return static_cast<float>(std::log1p(std::max(count, 0.0)));
@@ -130,7 +129,7 @@ void find_visits(const Exploration& now, NearestFirst& search, OnlineScratch& sc
         return true;
       },
       [](double) { return true; });
-  if (std::ssize(visits) <= kOnlineVisits) return;
+  if (visits.size() < 2) return;
   const View& view = now.view();
   const auto met = [&](NodeId node) {
     return std::ranges::count_if(view.into().neighbours(node),
@@ -147,7 +146,7 @@ void find_visits(const Exploration& now, NearestFirst& search, OnlineScratch& sc
     }
     std::swap(visits[place], visits[best]);
   }
-  visits.resize(kOnlineVisits);
+  visits.resize(std::min<std::size_t>(visits.size(), kOnlineVisits));
 }
 
 // What all rows of a decision share.

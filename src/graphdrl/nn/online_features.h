@@ -60,9 +60,10 @@ inline constexpr int kOnlineVisitFeatureCount = static_cast<int>(kOnlineVisitFea
 inline constexpr int kOnlineMapFeatureCount = static_cast<int>(kOnlineMapFeatures.size());
 inline constexpr int kOnlineFeatureCount = kOnlineVisitFeatureCount + kOnlineMapFeatureCount;
 
-// How many first visits are looked at, nearest first; of equally near ones those that pocket and open would take come
-// first.
+// How many first visits are looked at, nearest first. The first is the one that pocket would take; the second, where it
+// is about as near, the one that open would.
 inline constexpr int kOnlineVisits = 16;
+inline constexpr double kAboutAsNear = 1 + 1e-9;
 
 // Scratch memory. One thread at a time.
 struct OnlineScratch {

@@ -6,6 +6,12 @@
 
 namespace graphdrl {
 
+SharedOnlineExplorer builtin_online_explorer() {
+  static const SharedOnlineExplorer explorer = std::make_shared<const OnlineParameters>(read_online_explorer(
+      Safetensors::parse(std::string(builtin_online_explorer_file()), "the policy in the program")));
+  return explorer;
+}
+
 NodeId OnlineExplorerPolicy::choose(const Exploration& now, const Observation& observation) {
   if (!now.view().grows()) {
     throw Error({.what = "this policy explores maps that are not known",

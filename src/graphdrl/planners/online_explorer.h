@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "graphdrl/nn/online_network.h"
@@ -10,6 +11,10 @@
 namespace graphdrl {
 
 using SharedOnlineExplorer = std::shared_ptr<const OnlineParameters>;
+
+// The policy file that is part of the program, policies/online_explorer.safetensors; made at build time.
+std::string_view builtin_online_explorer_file();
+SharedOnlineExplorer builtin_online_explorer();
 
 // Makes the first visit with the highest score. Throws Error on a map that is known.
 class OnlineExplorerPolicy final : public FirstVisitPolicy {

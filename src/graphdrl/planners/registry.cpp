@@ -163,6 +163,7 @@ std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) 
 std::unique_ptr<Policy> make_online_policy(const PolicySpec& spec, std::uint64_t seed) {
   if (spec.kind == PolicyKind::kNearest) return std::make_unique<RulePolicy>(Rule::kNearest);
   if (spec.kind == PolicyKind::kDepthFirst) return std::make_unique<RulePolicy>(Rule::kDepthFirst);
+  if (spec.kind == PolicyKind::kExplorer) return std::make_unique<OnlineExplorerPolicy>(builtin_online_explorer());
   return make_policy(spec, seed);
 }
 

@@ -59,7 +59,8 @@ bool plans(const PolicySpec& spec);
 std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed = 1);
 // Whatever it is; planners are followed step by step. seed: of `search` and of random policies.
 std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed);
-// The same for an unknown map, of which more is known with each step: rules choose anew instead of planning on.
+// The same for an unknown map, of which more is known with each step: rules choose anew instead of planning on, and
+// `explorer` is the online one.
 std::unique_ptr<Policy> make_online_policy(const PolicySpec& spec, std::uint64_t seed);
 
 inline std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed = 1) {

@@ -15,6 +15,10 @@ namespace {
 // costs nothing, in % of the nodes. Chosen so that values vary about as much as those of coverage.
 constexpr double kWorthOfAll = 60;
 constexpr float kMostApart = 8;  // values are cut so far from their mean, in % of the nodes
+// What a teacher gains over the others in the whole walk counts so much at each choice that it would make: what one
+// choice brings drowns in the noise of values. Of 0, 0.1, 0.4 and 1.5, 0.1 and 0.4 gave the best policies, alike
+// within the noise (docs/unknown.md).
+constexpr double kTeacherWeight = 0.3;
 constexpr int kFirstValued = 4;  // the leader's choice, and those that the network ranks highest
 
 void go_on(Episode& episode, Policy& policy) {
@@ -40,7 +44,11 @@ class Lessons {
         world_(random_world(options.worlds[seed % options.worlds.size()], rng_)),
         // No ownership: the parameters stay the caller's.
         network_policy_(SharedOnlineExplorer(std::shared_ptr<void>(), &parameters)),
-        rules_{RulePolicy(Rule::kPocket), RulePolicy(Rule::kOpen)} {}
+        pocket_(Rule::kPocket),
+        open_(Rule::kOpen),
+        teachers_{{&pocket_}, {&open_}} {
+    if (!options.by_rules) teachers_.push_back({&network_policy_});
+  }
 
   std::vector<OnlineLesson> draw() {
     const auto chance = [&](double p) { return rng_.uniform() < p; };
@@ -53,9 +61,8 @@ class Lessons {
     Episode episode(
         world_, Task(world_, start, budget, end),
         {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges"), .numbers_seed = rng_.next()});
-    const bool by_network = chance(options_.lead);
-    RulePolicy& rule = rules_[rng_.index(2)];
-    Policy& leader = by_network ? static_cast<Policy&>(network_policy_) : rule;
+    try_teachers(episode);
+    Policy& leader = chance(options_.lead) ? static_cast<Policy&>(network_policy_) : *best_;
     const double share = options_.states_per_walk / (std::min(unlimited_ ? 1 : ratio, 1.0) * world_.valid_count());
     std::vector<OnlineLesson> lessons;
     while (!episode.done()) {
@@ -79,6 +86,11 @@ class Lessons {
   }
 
  private:
+  struct Teacher {
+    Policy* policy;
+    double gain = 0;  // of its whole walk over the teachers' mean, in % of the nodes
+  };
+
   // Whether the node has just been visited for the first time, so that there is something new to decide upon.
   static bool decided_at(const Episode& episode) { return episode.visits()[episode.position()] == 1; }
 
@@ -95,20 +107,28 @@ class Lessons {
     return 100 * ended.prize() / world_.total_prize();
   }
 
+  // Makes the whole walk by each teacher. The best goes on from first visits that are valued: where a rule beats the
+  // network, what the network would make of one says little of what can be made of it.
+  void try_teachers(const Episode& start) {
+    double most = -kNoLimit;
+    double sum = 0;
+    for (Teacher& teacher : teachers_) {
+      Episode walk = start.fork();
+      go_on(walk, *teacher.policy);
+      teacher.gain = worth(walk);
+      sum += teacher.gain;
+      if (teacher.gain <= most) continue;
+      most = teacher.gain;
+      best_ = teacher.policy;
+    }
+    for (Teacher& teacher : teachers_) teacher.gain -= sum / static_cast<double>(teachers_.size());
+  }
+
   double value(const Episode& episode, NodeId node) {
-    Episode first = episode.fork();
-    walk_along(first, way_to(first, node));
-    if (!options_.by_rules) {
-      go_on(first, network_policy_);
-      return worth(first);
-    }
-    double best = -kNoLimit;
-    for (RulePolicy& rule : rules_) {
-      Episode tried = first.fork();
-      go_on(tried, rule);
-      best = std::max(best, worth(tried));
-    }
-    return best;
+    Episode walk = episode.fork();
+    walk_along(walk, way_to(walk, node));
+    go_on(walk, *best_);
+    return worth(walk);
   }
 
   // Appends the state's lesson; gives a first visit drawn from those valued, kNoNode where there is no choice.
@@ -127,7 +147,9 @@ class Lessons {
     for (std::size_t i = kFirstValued; i + 1 < order.size(); ++i) {
       std::swap(order[i], order[i + rng_.below(static_cast<std::uint32_t>(order.size() - i))]);
     }
-    // Those that the rules would choose are among the first two where there are many [kOnlineVisits].
+    // What the teachers would choose, in their order. The rules' choices are the first two [kOnlineVisits].
+    const bool as_near = visits[1].cost <= visits[0].cost * kAboutAsNear;
+    const std::size_t choices[] = {0, as_near ? std::size_t{1} : 0, order.front()};
     for (const std::size_t rule_choice : {std::size_t{1}, std::size_t{0}}) {
       const auto place = std::ranges::find(order, rule_choice);
       std::rotate(order.begin(), place, place + 1);
@@ -142,6 +164,11 @@ class Lessons {
     const float mean =
         std::accumulate(lesson.value.begin(), lesson.value.end(), 0.0f) / static_cast<float>(lesson.value.size());
     for (float& of_visit : lesson.value) of_visit = std::clamp(of_visit - mean, -kMostApart, kMostApart);
+    for (std::size_t i = 0; i < teachers_.size(); ++i) {
+      const auto place = std::ranges::find(order, choices[i]);
+      if (place == order.end()) continue;
+      lesson.value[place - order.begin()] += static_cast<float>(kTeacherWeight * teachers_[i].gain);
+    }
     lessons.push_back(std::move(lesson));
     return visits[order[rng_.below(static_cast<std::uint32_t>(order.size()))]].node;
   }
@@ -151,7 +178,10 @@ class Lessons {
   Rng rng_;
   World world_;
   OnlineExplorerPolicy network_policy_;
-  RulePolicy rules_[2];
+  RulePolicy pocket_;
+  RulePolicy open_;
+  std::vector<Teacher> teachers_;  // pocket, open, and the network once it values first visits
+  Policy* best_ = nullptr;         // of them
   bool unlimited_ = false;
   double whole_ = 0;
   OnlineNetwork network_;

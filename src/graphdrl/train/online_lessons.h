@@ -12,8 +12,8 @@ namespace graphdrl {
 
 struct OnlineLessonOptions {
   std::vector<WorldSpec> worlds;  // drawn from with equal chances
-  double lead = 0;                // chance of a walk to be led by the network, else by a rule
-  bool by_rules = false;          // rules go on from first visits, the better of two counts; else the network does
+  double lead = 0;                // chance of a walk to be led by the network, else by the best teacher
+  bool by_rules = false;          // the rules pocket and open are the teachers; else the network is one, too
   double least_budget = 0.4;      // times valid nodes and mean cost
   double most_budget = 1.3;
   double unlimited = 0.15;  // chance of no budget: then what it costs to visit all counts
@@ -26,7 +26,7 @@ struct OnlineLessonOptions {
 // One state: its first visits that were valued.
 struct OnlineLesson {
   std::vector<float> rows;   // [C, features]
-  std::vector<float> value;  // [C], % of the nodes, less the mean
+  std::vector<float> value;  // [C], % of the nodes, less the mean; what teachers would choose is worth more
 };
 
 // The lessons of one random walk. The same for the same seed.
