@@ -82,7 +82,7 @@ class Policy:
         """The policy of a file.
 
         Args:
-            path: a policy file, or `explorer`, the one in the package.
+            path: a policy file, or `explorer`, the one for known maps in the package.
 
         Raises:
             Error: a file that cannot be read, or is no policy.

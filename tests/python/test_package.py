@@ -168,11 +168,15 @@ def test_own_policies_see_no_more_than_is_known(family):
         assert plan.visited == pytest.approx(nearest.visited, abs=3)
 
 
-def test_policies_explore_what_they_know_alone():
-    """Of an explorer given as an object the walk is that of the name, not that of one that knows the map."""
+def test_policies_explore_what_they_know_alone(tmp_path):
+    """Of an explorer of known maps the walk is not that of one that knows the map, as an object or in a file."""
     world = graphdrl.World.random("geometric", 40, 1)
-    explored = graphdrl.explore(world, "0.7x", policy=graphdrl.Policy.load())
-    assert explored.walk == graphdrl.explore(world, "0.7x", policy="explorer").walk
+    explorer = graphdrl.Policy.load()
+    explored = graphdrl.explore(world, "0.7x", policy=explorer)
+    explorer.save(tmp_path / "known.safetensors")
+    assert explored.walk == graphdrl.explore(world, "0.7x", policy=str(tmp_path / "known.safetensors")).walk
+    default = graphdrl.explore(world, "0.7x")
+    assert default.walk == graphdrl.explore(world, "0.7x", policy="explorer").walk != explored.walk
     assert explored.walk != graphdrl.plan(world, "0.7x", policy="explorer").walk
     with pytest.raises(graphdrl.Error, match="directions"):
         graphdrl.explore(graphdrl.World.from_file("paper:a"), 9, policy=graphdrl.PaperNetwork.random())
