@@ -28,12 +28,14 @@ Asked asked_of(const World& world, const std::optional<std::string>& budget, std
 Answer plan(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
             const std::optional<AskedEnd>& end, const std::string& policy, const nb::object& own,
             std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress,
-            const std::string& reveal, const std::string& score, std::optional<double> think_time) {
+            const std::string& reveal, const std::string& score, std::optional<double> think_time,
+            const std::optional<World>& believed) {
   const Task task(world, asked_of(world, budget, start, end));
   PlanRequest request{.policy = policy,
                       .seed = seed,
                       .reveal = Reveal::parse(reveal),
                       .score = parse_score(score),
+                      .believed = believed ? believe(*believed, world) : nullptr,
                       .think_s = think_time.value_or(kNoLimit)};
   if (!own.is_none()) {
     const OwnPolicy chosen = own_policy_of(own);
@@ -68,6 +70,7 @@ nb::dict claims_of(const Answer& answer) {
   claims["seen_counts"] = answer.score == Score::kSeen;
   claims["seen"] = answer.discovered.nodes;
   claims["seen_after_step"] = answer.discovered.after_step;
+  claims["no_way_back"] = answer.discovered.no_way_back;
   return claims;
 }
 
@@ -87,7 +90,8 @@ Answer restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, con
                 .reveal = Reveal::parse(nb::cast<std::string>(claims["reveal"])),
                 .score = nb::cast<bool>(claims["seen_counts"]) ? Score::kSeen : Score::kVisited,
                 .discovered = {.nodes = nb::cast<std::vector<NodeId>>(claims["seen"]),
-                               .after_step = nb::cast<std::vector<int>>(claims["seen_after_step"])}};
+                               .after_step = nb::cast<std::vector<int>>(claims["seen_after_step"]),
+                               .no_way_back = nb::cast<int>(claims["no_way_back"])}};
   answer.plan.prize = nb::cast<double>(claims["prize"]);
   answer.plan.bound = nb::cast<double>(claims["bound"]);
   return answer;
@@ -136,7 +140,7 @@ void bind_planning(nb::module_& module) {
   module.def("plan", &plan, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(), nb::arg("end").none(),
              nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"),
              nb::arg("on_progress").none(), nb::arg("reveal") = "all", nb::arg("score") = "visited",
-             nb::arg("think_time") = nb::none());
+             nb::arg("think_time") = nb::none(), nb::arg("believed") = nb::none());
   module.def("upper_bound", &upper_bound, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(),
              nb::arg("end").none(), nb::arg("time_limit").none());
 }

@@ -252,10 +252,11 @@ def explore(
     budget: Budget | None = None,
     start: Node | None = None,
     end: Node | None = None,
-    policy: str | Policy | OwnPolicy = "explorer",
+    policy: str | Policy | OwnPolicy | None = None,
     *,
     reveal: str = "edges",
     score: str = "visited",
+    believed: World | None = None,
     until_covered: bool = False,
     think_time: float | None = None,
     time_limit: float | None = None,
@@ -275,11 +276,13 @@ def explore(
         start: as of `plan`.
         end: as of `plan`. A walk that must end at a node keeps the way back to its start, until it has seen that node
             and can pay for the way there.
-        policy: as of `plan`. `explorer` is the one for unknown maps. Policies that plan, and an Explorer of known maps,
-            do so on what is known, anew with each discovery.
+        policy: as of `plan`; by default `explorer`, the one for unknown maps, and with `believed` `search:10000`.
+            Policies that plan, and an Explorer of known maps, do so on what is known, anew with each discovery.
         reveal: what a visit shows. `edges`: those of the node, and where they lead; `radius:R`: all within the cost R;
             `sight:R`, on grids: what straight lines of the length R meet; `all`: the whole map.
         score: what counts, nodes `visited` or nodes `seen`.
+        believed: an old map, of which some may have changed: cells are the same by place, other nodes by name. Only
+            policies that plan take one; they plan on it, corrected by what was seen.
         until_covered: instead of a budget: until nothing is left that is known and not visited, or seen.
         think_time: seconds for each choice, of policies that plan.
         time_limit: seconds in all; then the walk goes straight to where it must end. Without the two limits, the same
@@ -292,8 +295,10 @@ def explore(
 
     Raises:
         Error: as of `plan`; a bad `reveal` or `score`, or a time that is no time; sight without cells; a budget with
-            `until_covered`.
+            `until_covered`; an old map of another kind, or a policy that does not plan on it.
     """
+    if policy is None:
+        policy = "explorer" if believed is None else "search:10000"
     name, own = policy_of(policy)
     if flag(until_covered, "until_covered"):
         if budget is not None:
@@ -301,7 +306,8 @@ def explore(
         budget = "inf"
     report = _core.plan(
         *_asked(world, budget, start, end), name, own, _seconds(time_limit), whole_number(seed, "seed"),
-        function(on_progress, "on_progress"), text(reveal, "reveal"), text(score, "score"), _think_time(think_time),
+        function(on_progress, "on_progress"), text(reveal, "reveal"), text(score, "score"),
+        _think_time(think_time), None if believed is None else _require_world(believed)._core,
     )  # fmt: skip
     return Plan(world, report)
 

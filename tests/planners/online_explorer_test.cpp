@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "graphdrl/env/episode.h"
 #include "graphdrl/env/world_families.h"
+#include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/registry.h"
 #include "support.h"
 
@@ -13,17 +13,11 @@ namespace {
 // Share of a hidden world's nodes that are visited with as many steps, in %.
 double coverage(const World& world, const std::string& name, std::uint64_t seed) {
   const NodeId start = world.valid_nodes()[seed % world.valid_nodes().size()];
-  Episode episode(world, Task(world, start, world.valid_count() * world.open().mean_cost()),
-                  {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges"), .numbers_seed = seed});
+  const Task task(world, start, world.valid_count() * world.open().mean_cost());
+  const Episode episode(
+      world, task, {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges"), .numbers_seed = seed});
   const auto policy = make_online_policy(parse_policy(name), seed);
-  int action = kStop;
-  while (!episode.done()) {
-    const Observation now = episode.observation();
-    policy->act({&now, 1}, {&action, 1});
-    if (action == kStop) break;
-    episode.step(action);
-  }
-  return 100.0 * episode.visited_count() / world.valid_count();
+  return world.percent_of_all(roll_out(episode, {&start, 1}, *policy).front().prize);
 }
 
 double mean_coverage(const WorldSpec& spec, const std::string& name) {

@@ -80,6 +80,75 @@ def test_evaluate_tells_the_price_of_ignorance(run, grid, tmp_path):
     assert "of unknown maps that reveal edges" in text and "price of ignorance" in text
 
 
+def test_evaluate_until_covered_compares_costs(run, grid, tmp_path):
+    arguments = ["graphdrl", "evaluate", "--maps", grid, "--reveal", "edges", "--until", "covered", "--end", "start"]
+    arguments += ["--start", "2,0", "--episodes", "3", "--price", "0.2", "--json"]
+    document = json.loads(run(*arguments).stdout)
+    nearest = next(row for row in document["families"] if row["policy"] == "nearest")
+    walk = explored(run, grid, "--policy", "nearest", "--until", "covered", "--start", "2,0", "--end", "start")
+    assert nearest["cost"]["mean"] == walk["cost"]  # cells have no numbers to hide: each episode is the same
+    asked = ["--budget", "inf", "--start", "2,0", "--end", "start", "--json"]
+    tour = json.loads(run("graphdrl", "plan", grid, *asked).stdout)
+    assert tour["visited"] == 40 and nearest["known"]["mean"] == tour["cost"]
+    assert nearest["price_of_ignorance"]["mean"] == pytest.approx(walk["cost"] / tour["cost"])
+    text = run(*arguments[:-1]).stdout
+    assert text.startswith("Cost until nothing is left that is known") and "3 episodes per map from '2,0'" in text
+    for wrong in (["--reveal", "all"], ["--policy", "random-walk"], ["--all-starts"], ["--budget", "9"]):
+        process = run(*arguments, *wrong)
+        assert process.returncode == 2 and len(process.stderr.splitlines()) == 1, process.stderr
+
+
+def test_small_worlds_have_their_optimum_beside_them(run, tmp_path):
+    path = tmp_path / "small.txt"
+    path.write_text("....\n.#..\n....\n")
+    process = run("graphdrl", "evaluate", "--maps", path, "--reveal", "edges", "--budget", "9", "--json")
+    for row in json.loads(process.stdout)["families"]:
+        assert row["known"]["mean"] >= row["coverage"]["mean"] and row["price_of_ignorance"]["mean"] >= 1
+
+
+def test_the_price_of_ignorance_of_one_walk(run, grid):
+    covered = explored(run, grid, "--until", "covered", "--end", "start", "--price", "0.2")
+    assert covered["known"]["visited"] == 40
+    assert covered["price_of_ignorance"] == pytest.approx(covered["cost"] / covered["known"]["cost"])
+    plan = explored(run, grid, "--budget", "30", "--price", "0.2")
+    assert plan["price_of_ignorance"] == pytest.approx(plan["known"]["visited"] / plan["visited"])
+    text = run("graphdrl", "explore", grid, "--budget", "30", "--price", "0.2").stdout
+    assert "a walk that knows the map visits 31 for 30: the price of ignorance is" in text
+
+
+def test_it_says_what_was_left_for_want_of_a_way_back(run, tmp_path):
+    path = tmp_path / "arcs.edges"
+    path.write_text("a b\nb a\nb c\n")
+    arguments = ["graphdrl", "explore", path, "--directed", "--until", "covered", "--end", "start"]
+    process = run(*arguments)
+    assert process.returncode == 0, process.stderr
+    assert process.stdout.count("1 node was not entered: no way back is known") == 1
+    assert json.loads(run(*arguments, "--json").stdout)["no_way_back"] == 1
+
+
+def test_an_old_map_is_a_guess(run, grid, tmp_path):
+    old = tmp_path / "old.txt"
+    old.write_text(grid.read_text().replace("##..#", ".#..#"))
+    plan = explored(run, grid, "--believed", old, "--budget", "39", "--price", "0.2")
+    assert plan["policy"].startswith("search") and plan["visited"] > explored(run, grid, "--budget", "39")["visited"]
+    process = run(
+        *["graphdrl", "evaluate", "--maps", grid, "--believed", old, "--reveal", "edges", "--budget", "39", "--json"],
+        *["--policy", "search:500", "--policy", "nearest", "--episodes", "5"],
+    )
+    search, nearest = json.loads(process.stdout)["families"]
+    assert search["coverage"]["mean"] > nearest["coverage"]["mean"]
+    wide = tmp_path / "wide.txt"
+    wide.write_text("..........\n")
+    for arguments, words in (
+        (["--believed", wide], "the believed map is of another kind"),
+        (["--believed", old, "--policy", "pocket"], "does not plan on an old map"),
+        (["--believed", old, "--end", "start"], "ways back must be known"),
+        (["--believed", old, "--reveal", "all"], "an old map goes with a map that is not known"),
+    ):
+        process = run("graphdrl", "explore", grid, "--budget", "9", *arguments)
+        assert process.returncode == 2 and words in process.stderr and len(process.stderr.splitlines()) == 1
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

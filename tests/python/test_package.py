@@ -168,6 +168,19 @@ def test_own_policies_see_no_more_than_is_known(family):
         assert plan.visited == pytest.approx(nearest.visited, abs=3)
 
 
+def test_an_old_map_is_that_of_the_command(tmp_path):
+    old, new = tmp_path / "old.txt", tmp_path / "new.txt"
+    old.write_text("......\n.#....\n...#..\n......\n")
+    new.write_text("......\n.##...\n......\n......\n")
+    expected = run_json("explore", new, "--believed", old, "--budget", "18", "--json")
+    worlds = [graphdrl.World.load(path) for path in (new, old)]
+    assert graphdrl.explore(worlds[0], 18, believed=worlds[1]).nodes.tolist() == expected["walk"]
+    plan = graphdrl.explore(worlds[0], 18, believed=worlds[1], policy=graphdrl.Policy.load())
+    assert plan.visited > 10
+    with pytest.raises(graphdrl.Error, match="with a policy that plans"):
+        graphdrl.explore(worlds[0], 18, believed=worlds[1], policy=lambda state: None)
+
+
 def test_policies_explore_what_they_know_alone(tmp_path):
     """Of an explorer of known maps the walk is not that of one that knows the map, as an object or in a file."""
     world = graphdrl.World.random("geometric", 40, 1)

@@ -7,6 +7,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/episode.h"
+#include "graphdrl/eval/comparison.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/planners/exact.h"
@@ -60,10 +61,22 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
                 .policy = request.policy,
                 .plan = {},
                 .reveal = request.reveal,
-                .score = request.score};
+                .score = request.score,
+                .until_covered = request.until_covered};
   std::unique_ptr<Planner> planner;
   std::unique_ptr<Policy> policy;
-  if (request.own_planner && request.reveal.all()) {
+  if (request.believed != nullptr) {
+    if (request.reveal.all() || request.own_policy) {
+      throw Error({.what = "an old map goes with a map that is not known, and with a policy that plans"});
+    }
+    if (request.own_planner) {
+      policy = make_believing_policy(request.own_planner(), request.believed);
+    } else {
+      const PolicySpec spec = spec_of(request);
+      answer.policy = spec.label;
+      policy = make_believing_policy(spec, request.seed, request.believed);
+    }
+  } else if (request.own_planner && request.reveal.all()) {
     planner = request.own_planner();
   } else if (request.own_planner) {
     policy = std::make_unique<PlannerPolicy>(request.own_planner());  // on what is known
@@ -86,14 +99,26 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
         .action_space = request.reveal.all() ? action_space_of(world) : ActionSpace::kNeighbours,
         .reveal = request.reveal,
         .score = request.score,
+        .believed = request.believed,
         .numbers_seed = request.seed};
     answer.plan = plan_by_steps(world, task, options, *policy, plan_clock, request.think_s, &answer.discovered);
   }
   check_plan(world, task, answer.plan);
+  if (request.price_s) {
+    if (request.reveal.all() || request.score == Score::kSeen) {
+      throw Error({.what = "the price of ignorance is that of nodes visited on maps that are not known"});
+    }
+    answer.known = make_planner("search", request.seed)->plan(task, clock.at_most(*request.price_s));
+  }
   answer.plan.settle(bound);
   answer.unreachable = count_unreachable(world, task.start());
   answer.elapsed_s = watch.seconds();
   return answer;
+}
+
+double Answer::price_of_ignorance() const {
+  return until_covered ? graphdrl::price_of_ignorance(known->cost, plan.cost, /*costs=*/true)
+                       : graphdrl::price_of_ignorance(known->prize, plan.prize, /*costs=*/false);
 }
 
 void judge(Answer& answer) {
@@ -129,6 +154,13 @@ std::vector<std::string> plan_summary(const Answer& answer) {
   if (hidden) {
     lines.push_back(fmt::format("seen {} of {} nodes, {:.1f} %", answer.discovered.nodes.size(), world.valid_count(),
                                 100.0 * static_cast<double>(answer.discovered.nodes.size()) / world.valid_count()));
+  }
+  if (const int left = answer.discovered.no_way_back; left > 0) {
+    lines.push_back(fmt::format("{} node{} not entered: no way back is known", left, left == 1 ? " was" : "s were"));
+  }
+  if (answer.known) {
+    lines.push_back(fmt::format("a walk that knows the map visits {} for {}: the price of ignorance is {:.3f}",
+                                answer.known->visited, decimal(answer.known->cost), answer.price_of_ignorance()));
   }
   if (answer.score == Score::kSeen) return lines;
   const std::string what =

@@ -24,13 +24,20 @@ struct Answer {
   double elapsed_s = 0;
   Reveal reveal = {};  // what was not known beforehand …
   Score score = Score::kVisited;
-  Discovered discovered = {};  // … and how it became known
+  Discovered discovered = {};      // … and how it became known
+  std::optional<Plan> known = {};  // by a walk that knows the map, where that was asked for
+  bool until_covered = false;      // costs tell walks apart, not what they visit
+
+  // What it costs not to know the map [eval/comparison.h]. REQUIRES: known.
+  double price_of_ignorance() const;
 
   // By any walk, at most: all valid nodes where the plan has no bound. REQUIRES: the world has no prizes.
   int max_visited() const { return static_cast<int>(std::clamp<double>(plan.bound, 0, world.valid_count())); }
 };
 
-inline constexpr const char* kOnlinePolicy = "explorer";  // where the map is not known and nobody asks for another
+// Where nobody asks for another: where the map is not known, and where there is an old one besides.
+inline constexpr const char* kOnlinePolicy = "explorer";
+inline constexpr const char* kBelievingPolicy = "search:10000";  // plans often
 
 struct PlanRequest {
   std::string policy = "search";                // as parse_policy() takes it
@@ -38,7 +45,10 @@ struct PlanRequest {
   std::optional<std::int64_t> iterations = {};  // of `search`, instead of those in its name
   Reveal reveal = {};                           // unless all is known, the policy explores instead of planning
   Score score = Score::kVisited;
-  double think_s = kNoLimit;  // of an exploration, for a choice
+  std::shared_ptr<const BelievedMap> believed = {};  // an old map, by which the policy plans; null without one
+  bool until_covered = false;                        // the task has no budget
+  double think_s = kNoLimit;                         // of an exploration, for a choice
+  std::optional<double> price_s = {};                // likewise: seconds for a walk that knows the map, by `search`
   // One of these instead of a policy that has a name here; `policy` is then what it is called.
   std::function<std::unique_ptr<Planner>()> own_planner = {};
   std::function<std::unique_ptr<Policy>()> own_policy = {};

@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
@@ -12,6 +13,7 @@ namespace {
 
 const std::vector<std::string> kLadder = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
 const std::vector<std::string> kOnlineLadder = {"random-walk", "dfs", "nearest", "pocket", "open", "explorer"};
+const std::vector<std::string> kUntilCoveredLadder(kOnlineLadder.begin() + 1, kOnlineLadder.end());  // all end
 
 struct EvaluateOptions {
   std::vector<std::string> maps = {"paper"};
@@ -20,6 +22,8 @@ struct EvaluateOptions {
   ComparisonOptions comparison = {.policies = kLadder};
   std::string reveal = "all";
   std::string score = "visited";
+  std::string until;
+  std::vector<std::string> believed;
   bool json = false;
 };
 
@@ -67,7 +71,7 @@ Json to_json(const Comparison& comparison) {
     families.push_back({{"family", row.family},
                         {"policy", row.policy},
                         {"maps", row.maps},
-                        {"coverage", mean_json(row.coverage)},
+                        {comparison.options.until_covered ? "cost" : "coverage", mean_json(row.coverage)},
                         {"known", mean_json(row.known)},
                         {"price_of_ignorance", mean_json(row.price)}});
   }
@@ -79,12 +83,24 @@ void evaluate(const EvaluateOptions& options) {
   if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
   comparison.reveal = Reveal::parse(options.reveal);
   comparison.score = parse_score(options.score);
-  if (!comparison.reveal.all() && comparison.policies == kLadder) comparison.policies = kOnlineLadder;
+  comparison.until_covered = !options.until.empty();
+  if (!comparison.reveal.all() && comparison.policies == kLadder) {
+    comparison.policies = comparison.until_covered ? kUntilCoveredLadder : kOnlineLadder;
+  }
   std::vector<World> worlds;
   for (const std::string& maps : options.maps) {
     const std::vector<World> more = load_worlds({maps}, options.reading);
     worlds.insert(worlds.end(), more.begin(), more.end());
     if (!comparison.reveal.all()) comparison.families.resize(worlds.size(), maps);
+  }
+  if (!options.believed.empty()) {
+    const std::vector<World> old = load_worlds(options.believed, options.reading);
+    if (old.size() != worlds.size()) {
+      throw Error({.what = "bad number of believed maps",
+                   .expected = std::to_string(worlds.size()),
+                   .got = std::to_string(old.size())});
+    }
+    for (std::size_t i = 0; i < old.size(); ++i) comparison.believed.push_back(believe(old[i], worlds[i]));
   }
   const Comparison result = compare(worlds, comparison);
   if (options.json) return print_json(to_json(result));
@@ -106,15 +122,17 @@ void add_evaluate_command(CLI::App& app) {
       command, "--budget", options->budget, "B",
       "What an episode may cost, or a multiple of the valid nodes, as 1.1x. The default is the file's, else "
       "25");
+  CLI::Option* const start =
+      add_text_option(command, "--start", options->comparison.start, "S",
+                      "Where all episodes begin, as of plan. The default is the file's, else random ones");
   add_text_option(command, "--end", options->comparison.end, "E",
                   "Where walks must end: anywhere, start, or a node. The default is the file's, else anywhere");
-  CLI::Option* const episodes = command
-                                    .add_option("--episodes", options->comparison.episodes,
-                                                "Episodes per map, from the file's start, else from random ones")
+  CLI::Option* const episodes = command.add_option("--episodes", options->comparison.episodes, "Episodes per map")
                                     ->type_name("K")
                                     ->capture_default_str();
   command.add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
-      ->excludes(episodes);
+      ->excludes(episodes)
+      ->excludes(start);
   CLI::Option* const reveal = add_text_option(command, "--reveal", options->reveal, "R",
                                               "What is known of a map: all of it, or what visits show, edges, radius:R "
                                               "or sight:R, as of explore; then a table by "
@@ -125,8 +143,21 @@ void add_evaluate_command(CLI::App& app) {
       ->needs(reveal)
       ->capture_default_str();
   command
-      .add_option("--price", options->comparison.price_s,
-                  "The price of ignorance, too: seconds that search has for each walk that knows the map")
+      .add_option("--believed", options->believed,
+                  "Old maps, by which policies plan that do: as of --maps, as many and in the same order")
+      ->needs(reveal)
+      ->type_name("OLD");
+  command
+      .add_option("--until", options->until,
+                  "Instead of a budget: covered, until nothing is left that is known; costs are compared then")
+      ->check(CLI::IsMember({"covered"}))
+      ->needs(reveal)
+      ->excludes(command.get_option("--budget"));
+  command
+      .add_option(
+          "--price", options->comparison.price_s,
+          "The price of ignorance, of maps of more than 25 nodes too: seconds that search has for each walk that "
+          "knows the map")
       ->check(CLI::PositiveNumber)
       ->needs(reveal)
       ->type_name("S");

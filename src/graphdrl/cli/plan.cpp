@@ -32,6 +32,7 @@ struct PlanOptions {
   std::string reveal = "all";
   std::string score = "visited";
   std::string until;
+  std::string believed;
   std::optional<double> think_time_s;
   std::vector<std::string> out;
   bool walk = false;
@@ -79,11 +80,18 @@ void plan(const PlanOptions& options) {
   for (const std::string& file : options.out) check_plan_file(file);
   const World world = load_one_world(options.map, options.reading);
   Asked asked = asked_of(world, options.asked);
-  if (!options.until.empty()) asked.budget = Budget(kNoLimit);
+  const bool until_covered = !options.until.empty();
+  if (until_covered) asked.budget = Budget(kNoLimit);
   const Task task(world, asked);
   PlanRequest request = options.request;
   request.reveal = Reveal::parse(options.reveal);
   request.score = parse_score(options.score);
+  request.until_covered = until_covered;
+  if (!options.believed.empty()) {
+    request.believed = believe(load_one_world(options.believed, options.reading), world);
+    if (request.policy.empty()) request.policy = kBelievingPolicy;
+  }
+  if (request.policy.empty()) request.policy = kOnlinePolicy;
   if (options.think_time_s) request.think_s = *options.think_time_s;
   for (const std::string& file : options.out) check_plan_file(world, file);
   catch_stop_signals();  // the best walk so far is printed
@@ -123,7 +131,6 @@ void add_shared_options(CLI::App& command, PlanOptions& options) {
   add_text_option(command, "--end", options.asked.end, "E",
                   "Where the walk must end: anywhere, start, or a node as for --start. The default is the file's, else "
                   "anywhere");
-  command.add_option("--policy", options.request.policy, policy_names())->type_name("P")->capture_default_str();
 }
 
 void add_shared_outputs(CLI::App& command, PlanOptions& options) {
@@ -144,6 +151,7 @@ void add_plan_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
   add_shared_options(command, *options);
+  command.add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
   command
       .add_option("--iterations", options->request.iterations,
                   "Of search: how many steps to take in all; the default depends on the size of the world")
@@ -163,8 +171,13 @@ void add_explore_command(CLI::App& app) {
       "explore", "Explore a map that is not known beforehand, and say what knowing it would have brought");
   const auto options = std::make_shared<PlanOptions>();
   options->reveal = "edges";
-  options->request.policy = kOnlinePolicy;
+  options->request.policy = "";
   add_shared_options(command, *options);
+  command
+      .add_option(
+          "--policy", options->request.policy,
+          policy_names() + fmt::format(". The default is {}, with --believed {}", kOnlinePolicy, kBelievingPolicy))
+      ->type_name("P");
   add_text_option(
       command, "--reveal", options->reveal, "R",
       "What a visit shows: edges, those of the node; radius:R, all within that cost; sight:R on grids, what "
@@ -173,11 +186,18 @@ void add_explore_command(CLI::App& app) {
   command.add_option("--score", options->score, "What counts: nodes visited, or nodes seen")
       ->check(CLI::IsMember({"visited", "seen"}))
       ->capture_default_str();
+  add_text_option(command, "--believed", options->believed, "OLD",
+                  "An old map, of which some may have changed: cells are the same by place, other nodes by name");
   CLI::Option* const until =
       command
           .add_option("--until", options->until, "Instead of a budget: covered, until nothing is left that is known")
           ->check(CLI::IsMember({"covered"}));
   until->excludes(command.get_option("--budget"));
+  command
+      .add_option("--price", options->request.price_s,
+                  "The price of ignorance, too: seconds that search has for a walk that knows the map")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
   command.add_option("--think-time", options->think_time_s, "Seconds for each choice, of policies that plan")
       ->check(CLI::PositiveNumber)
       ->type_name("S");

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 #include <queue>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "graphdrl/base/error.h"
@@ -94,6 +96,33 @@ Score parse_score(std::string_view text) {
   throw Error({.what = "bad score", .expected = "visited or seen", .got = in_quotes(text)});
 }
 
+std::shared_ptr<const BelievedMap> believe(const World& old, const World& world) {
+  const auto refuse = [&](const std::string& expected) {
+    throw Error({.what = "the believed map is of another kind", .expected = expected, .where = old.name()});
+  };
+  if (old.has_cells() != world.has_cells()) refuse(world.has_cells() ? "cells" : "a graph");
+  if (world.has_cells() && (old.map()->rows != world.map()->rows || old.map()->cols != world.map()->cols)) {
+    refuse(fmt::format("{}×{} cells", world.map()->rows, world.map()->cols));
+  }
+  if (old.open().directed() != world.open().directed()) refuse(world.open().directed() ? "arcs" : "edges both ways");
+  if (old.open().is_complete()) refuse("a graph of which some edges are missing");
+  std::vector<NodeId> node_of(world.node_count(), kNoNode);
+  if (!old.labels().empty() && !world.labels().empty()) {
+    std::unordered_map<std::string_view, NodeId> by_label;
+    for (NodeId node = 0; node < old.node_count(); ++node) by_label.emplace(old.labels()[node], node);
+    for (NodeId node = 0; node < world.node_count(); ++node) {
+      const auto found = by_label.find(world.labels()[node]);
+      if (found != by_label.end()) node_of[node] = found->second;
+    }
+  } else if (old.labels().empty() && world.labels().empty()) {
+    for (NodeId node = 0; node < std::min(old.node_count(), world.node_count()); ++node) node_of[node] = node;
+  }
+  if (std::ranges::all_of(node_of, [](NodeId node) { return node == kNoNode; })) {
+    throw Error({.what = "the believed map has other nodes", .expected = "the same names", .where = old.name()});
+  }
+  return std::make_shared<const BelievedMap>(BelievedMap{.world = old, .node_of = std::move(node_of)});
+}
+
 Discovery::Discovery(std::string name, EdgeKind kind, bool ordered)
     : known_(nothing_known(std::move(name), kind, ordered)), view_(known_) {}
 
@@ -102,7 +131,7 @@ Discovery::Discovery(const Discovery& other)
       view_(known_),
       to_end_(other.to_end_ ? std::make_shared<std::vector<double>>(*other.to_end_) : nullptr) {}
 
-NodeId Discovery::see(double prize) {
+NodeId Discovery::see(double prize, std::optional<NodeId> believed_as) {
   Known& known = *known_;
   const NodeId node = known.open.add_node();
   if (known.into) {
@@ -118,6 +147,7 @@ NodeId Discovery::see(double prize) {
   known.first_seen.push_back(static_cast<std::uint32_t>(known.version));
   known.seen_at.push_back(static_cast<std::uint32_t>(known.version));
   known.frontier_neighbours.push_back(0);
+  if (believed_as) known.believed_as.push_back(*believed_as);
   ++known.frontier_count;
   known.recent.push_back(node);
   if (to_end_ != nullptr) to_end_->push_back(kNoLimit);
@@ -211,11 +241,13 @@ void Discovery::shorten(NodeId from, double cost) {
   }
 }
 
-HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, NodeId start, std::uint64_t seed)
+HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, NodeId start, std::uint64_t seed,
+                         std::shared_ptr<const BelievedMap> believed)
     : world_(world),
       reveal_(reveal),
       score_(score),
       rng_(seed),
+      believed_(std::move(believed)),
       discovery_(world.name(), world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected,
                  world.has_cells()),
       known_as_(world.node_count(), kNoNode) {
@@ -226,13 +258,16 @@ HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, 
     seen_cells_.resize(world.node_count());
     rays_ = rays_within(reveal.range(), *world.map());
   }
+  if (believed_ != nullptr && believed_->node_of[start] == kNoNode) {
+    throw Error({.what = "the start is not in the believed map", .where = believed_->world.name()});
+  }
   visit(see(start));
 }
 
 NodeId HiddenWorld::see(NodeId in_world) {
   NodeId& node = known_as_[in_world];
   if (node != kNoNode) return node;
-  node = discovery_.see(world_.prize(in_world));
+  node = discovery_.see(world_.prize(in_world), believed_ ? std::optional(believed_->node_of[in_world]) : std::nullopt);
   in_world_.push_back(in_world);
   ground_.grow(node + 1);
   return node;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,16 @@ enum class Score {
 // "visited" or "seen". Throws Error on anything else.
 Score parse_score(std::string_view text);
 
+// An old map of a world, which may have changed since.
+struct BelievedMap {
+  World world;
+  std::vector<NodeId> node_of;  // [N of the world as it is], the node of the same name; kNoNode where there is none
+};
+
+// Pairs nodes by name: cells by place, others by label, and where neither has labels by number. Throws Error where the
+// maps are not of one kind, cells of another size among them, and where no name is in both.
+std::shared_ptr<const BelievedMap> believe(const World& old, const World& world);
+
 // A graph that grows by what it is told. It numbers nodes in the order in which they are seen.
 class Discovery {
  public:
@@ -57,8 +68,9 @@ class Discovery {
 
   const View& view() const { return view_; }
 
-  // A new node is seen, on the frontier. prize: of its first visit.
-  NodeId see(double prize = 1);
+  // A new node is seen, on the frontier. prize: of its first visit. believed_as: its node in an old map, kNoNode where
+  // that has none; empty without an old map, of all nodes or of none.
+  NodeId see(double prize = 1, std::optional<NodeId> believed_as = {});
   // Makes an edge between nodes seen known; does nothing where it is. Frontier nodes at its ends are seen again.
   // places: as Graph::add_edge().
   void connect(const Edge& edge, const Graph::Places& places = {});
@@ -88,8 +100,10 @@ class Discovery {
 class HiddenWorld {
  public:
   // Begins at a node of the world, which it visits. Throws Error on a reveal that the world does not have: sight
-  // without cells. seed: of the numbers of nodes.
-  HiddenWorld(const World& world, const Reveal& reveal, Score score, NodeId start, std::uint64_t seed);
+  // without cells; on a start that the old map does not have. seed: of the numbers of nodes. believed: null without an
+  // old map.
+  HiddenWorld(const World& world, const Reveal& reveal, Score score, NodeId start, std::uint64_t seed,
+              std::shared_ptr<const BelievedMap> believed = nullptr);
 
   const Discovery& discovery() const { return discovery_; }
   Discovery& discovery() { return discovery_; }
@@ -117,6 +131,7 @@ class HiddenWorld {
   Reveal reveal_;
   Score score_;
   Rng rng_;
+  std::shared_ptr<const BelievedMap> believed_;
   Discovery discovery_;
   std::vector<NodeId> in_world_;  // [seen]
   std::vector<NodeId> known_as_;  // [N of the world]

@@ -60,7 +60,8 @@ void Episode::reset(NodeId start, std::uint64_t number) {
 
 void Episode::begin_hidden(std::uint64_t number) {
   const std::uint64_t seed = derive_seed(options_.numbers_seed, number);
-  hidden_ = std::make_shared<HiddenWorld>(world_, options_.reveal, options_.score, asked_.start(), seed);
+  hidden_ =
+      std::make_shared<HiddenWorld>(world_, options_.reveal, options_.score, asked_.start(), seed, options_.believed);
   const NodeId start = hidden_->known_as(asked_.start());
   task_ = asked_.ends_anywhere() ? asked_.on(hidden_->view(), start, kNoNode, nullptr)
                                  : asked_.on(hidden_->view(), start, start, hidden_->discovery().keep_costs_to(start));

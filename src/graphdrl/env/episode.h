@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,7 +29,8 @@ struct EpisodeOptions {
   bool punish_blocked_by_visits = false;
   Reveal reveal = {};  // what is not known beforehand is explored by neighbours
   Score score = Score::kVisited;
-  std::uint64_t numbers_seed = 1;  // of the numbers by which an unknown world's nodes are known
+  std::shared_ptr<const BelievedMap> believed = {};  // of an unknown world; null without an old map
+  std::uint64_t numbers_seed = 1;                    // of the numbers by which an unknown world's nodes are known
 };
 
 inline constexpr double kFirstVisitReward = 0.1;   // eq. 3

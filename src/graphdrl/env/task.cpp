@@ -85,6 +85,7 @@ Task::Task(View view, NodeId start, double budget, End end)
   // More than enough is enough: so many mean edges visit everything.
   const double enough = static_cast<double>(kMaxSteps) * view_.open().mean_cost();
   limit_ = std::min(view_.spending_limit(budget_), enough);
+  has_budget_ = budget_ < enough;
   if (std::isinf(budget_)) budget_ = enough;
   check_node(view_, start_, "start");
   if (!ends_anywhere()) {

@@ -103,6 +103,9 @@ class Task {
   // What may be spent in all: the budget with room for the rounding of sums, and at most kMaxSteps mean edges.
   double limit() const { return limit_; }
 
+  // Whether the budget is less than that.
+  bool has_budget() const { return has_budget_; }
+
   // What it costs to get from a node to the end; 0 where any will do, kNoLimit where there is no way.
   double cost_to_end(NodeId node) const { return to_end_ == nullptr ? 0 : (*to_end_)[node]; }
 
@@ -145,6 +148,7 @@ class Task {
   NodeId end_;
   double budget_;
   double limit_;
+  bool has_budget_;
   std::shared_ptr<const std::vector<double>> to_end_;  // [N]; null where it may end anywhere
   NodeSet ground_ = {};                                // empty for the start alone
   NodeSet claimed_ = {};                               // empty for none

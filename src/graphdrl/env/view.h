@@ -61,6 +61,8 @@ struct Known {
   std::vector<bool> frontier = {};             // [N], nodes whose edges may not all be known
   std::vector<std::uint32_t> first_seen = {};  // [N], the version in which the node was first seen: visits, counted
   std::vector<std::uint32_t> seen_at = {};     // [N], likewise last
+  // [N], the node of the same name in an old map of the world, kNoNode where that has none; empty without an old map.
+  std::vector<NodeId> believed_as = {};
   std::vector<std::int32_t> frontier_neighbours = {};  // [N], how many, whichever way edges lead
   int frontier_count = 0;
   Census census = {};
@@ -100,6 +102,8 @@ class View {
   // When a node was last seen; later is more. REQUIRES: grows().
   std::uint32_t seen_at(NodeId node) const { return known_->seen_at[node]; }
   std::uint32_t first_seen(NodeId node) const { return known_->first_seen[node]; }
+  // As Known's. REQUIRES: there is an old map.
+  NodeId believed_as(NodeId node) const { return known_->believed_as[node]; }
   int frontier_neighbours(NodeId node) const { return known_->frontier_neighbours[node]; }
   int frontier_count() const { return known_->frontier_count; }
   const Census& census() const { return known_->census; }

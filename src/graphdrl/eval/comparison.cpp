@@ -37,20 +37,26 @@ constexpr std::uint64_t kBlockSeeds = 3;  // of a map's policy seed
 struct Contender {
   std::string label;  // the name as given where two would share a label
   bool plans;
-  std::function<std::unique_ptr<Policy>(std::uint64_t seed)> make;
+  // believed: an old map, or null.
+  std::function<std::unique_ptr<Policy>(std::uint64_t seed, const std::shared_ptr<const BelievedMap>& believed)> make;
 };
 
 std::vector<Contender> make_contenders(const ComparisonOptions& options) {
   std::vector<Contender> contenders;
   for (const std::string& name : options.policies) {
     if (const auto own = options.own_policies.find(name); own != options.own_policies.end()) {
-      contenders.push_back({name, false, [make = own->second](std::uint64_t) { return make(); }});
+      contenders.push_back({name, false, [make = own->second](auto&&...) { return make(); }});
     } else {
       const auto spec = std::make_shared<const PolicySpec>(parse_policy(name));
       const bool known = options.reveal.all();
-      contenders.push_back({spec->label, known && plans(*spec), [spec, known](std::uint64_t seed) {
-                              return known ? make_policy(*spec, seed) : make_online_policy(*spec, seed);
-                            }});
+      if (options.until_covered && (spec->kind == PolicyKind::kRandom || spec->kind == PolicyKind::kRandomWalk)) {
+        throw Error({.what = "random walks do not end until covered", .got = name});
+      }
+      const auto make = [spec, known](std::uint64_t seed, const std::shared_ptr<const BelievedMap>& believed) {
+        if (believed != nullptr && plans_online(*spec)) return make_believing_policy(*spec, seed, believed);
+        return known ? make_policy(*spec, seed) : make_online_policy(*spec, seed);
+      };
+      contenders.push_back({spec->label, known && plans(*spec), make});
     }
   }
   std::map<std::string, std::set<std::string>> names;
@@ -64,52 +70,56 @@ std::vector<Contender> make_contenders(const ComparisonOptions& options) {
 // A world with what all policies share on it.
 struct Arena {
   World world;
-  Task task;                       // of any of the starts
-  std::vector<NodeId> starts;      // one per episode
-  std::optional<double> optimum;   // percent
-  std::vector<double> known = {};  // percents of walks that know the map, by episode; empty unless asked for
+  Task task;                           // of any of the starts
+  std::vector<NodeId> starts;          // one per episode
+  std::optional<double> optimum = {};  // percent, the mean
+  std::vector<double> known = {};      // of walks that know the map, by episode; empty where the map is known
 };
 
-// Of what counts: prizes of nodes visited, or of nodes seen.
-std::vector<double> known_percents(const Arena& arena, const ComparisonOptions& options, const Clock& clock) {
-  std::map<NodeId, double> by_start;
-  Task task = arena.task;
-  std::vector<double> percents;
-  for (const NodeId start : arena.starts) {
-    const auto [known, fresh] = by_start.try_emplace(start);
-    if (fresh) {
-      task.start_at(start);
-      const auto planner = make_planner("search", options.seed);
-      known->second = arena.world.percent_of_all(planner->plan(task, clock.at_most(*options.price_s)).prize);
-    }
-    percents.push_back(known->second);
+// What a walk gets that knows the map.
+struct KnownResult {
+  double value;  // percent, or a cost
+  bool optimal;
+};
+
+std::optional<KnownResult> known_result(const World& world, const Task& task, const ComparisonOptions& options,
+                                        const Clock& clock) {
+  if (options.score == Score::kSeen) return std::nullopt;
+  if (world.valid_count() <= kOptimumMaxNodes && !options.until_covered) {
+    if (const auto prize = exact_prize(task)) return KnownResult{world.percent_of_all(*prize), /*optimal=*/true};
   }
-  return percents;
+  if (!options.price_s) return std::nullopt;
+  const Plan plan = make_planner("search", options.seed)->plan(task, clock.at_most(*options.price_s));
+  return KnownResult{options.until_covered ? plan.cost : world.percent_of_all(plan.prize), /*optimal=*/false};
 }
 
-std::optional<double> mean_optimum(const Arena& arena) {
-  const int nodes = arena.world.valid_count();
-  if (nodes > kOptimumMaxNodes) return std::nullopt;
-  std::map<NodeId, double> by_start;
+// Fills in what is known of the optimum.
+void solve(Arena& arena, const ComparisonOptions& options, const Clock& clock) {
+  std::map<NodeId, std::optional<KnownResult>> by_start;
   Task task = arena.task;
-  double sum = 0;
+  std::vector<double> values;
+  bool optimal = true;
   for (const NodeId start : arena.starts) {
-    const auto [known, fresh] = by_start.try_emplace(start);
+    const auto [result, fresh] = by_start.try_emplace(start);
     if (fresh) {
       task.start_at(start);
-      const auto prize = exact_prize(task);
-      if (!prize) return std::nullopt;
-      known->second = arena.world.percent_of_all(*prize);
+      result->second = known_result(arena.world, task, options, clock);
     }
-    sum += known->second;
+    if (!result->second) return;
+    values.push_back(result->second->value);
+    optimal = optimal && result->second->optimal;
   }
-  return sum / static_cast<double>(arena.starts.size());
+  if (optimal) {
+    arena.optimum = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  }
+  if (!options.reveal.all()) arena.known = std::move(values);
 }
 
 std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& options, std::size_t map) {
   const auto nodes = world.valid_nodes();
   if (options.all_starts) return {nodes.begin(), nodes.end()};
-  if (world.given().start != kNoNode) return std::vector<NodeId>(options.episodes, world.given().start);
+  const NodeId start = options.start.empty() ? world.given().start : parse_node(world, options.start, "start");
+  if (start != kNoNode) return std::vector<NodeId>(options.episodes, start);
   Rng rng(derive_seed(options.seed, kStartSeeds, map));
   std::vector<NodeId> starts;
   starts.reserve(static_cast<std::size_t>(options.episodes));
@@ -123,6 +133,7 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
     Asked asked{.budget = options.budget};
+    if (options.until_covered) asked.budget = Budget(kNoLimit);
     if (!asked.budget && !world.given().budget) asked.budget = Budget(kPaperBudget);
     if (!options.end.empty()) asked.end = parse_end(world, options.end);
     const std::vector<NodeId> starts = draw_starts(world, options, arenas.size());
@@ -131,12 +142,9 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
     if (!task.ends_at_start()) {
       for (const NodeId start : starts) task.start_at(start);  // throws Error where the end is out of reach
     }
-    arenas.push_back({.world = world, .task = task, .starts = starts, .optimum = {}});
+    arenas.push_back({.world = world, .task = task, .starts = starts});
   }
-  parallel_for(static_cast<int>(arenas.size()), [&](int i) {
-    arenas[i].optimum = mean_optimum(arenas[i]);
-    if (options.price_s) arenas[i].known = known_percents(arenas[i], options, clock);
-  });
+  parallel_for(static_cast<int>(arenas.size()), [&](int i) { solve(arenas[i], options, clock); });
   return arenas;
 }
 
@@ -172,13 +180,13 @@ std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const std::vect
   return blocks;
 }
 
-// Percents, by policy, map and episode; an empty one where a policy's search is out of reach.
-using Coverages = std::vector<std::vector<std::vector<double>>>;
+// Percents or costs, by policy, map and episode; an empty one where a policy's search is out of reach.
+using Results = std::vector<std::vector<std::vector<double>>>;
 
-Coverages measure(const std::vector<Arena>& arenas, const std::vector<Contender>& contenders,
-                  const ComparisonOptions& options, const Clock& clock) {
-  Coverages coverages(contenders.size(), std::vector<std::vector<double>>(arenas.size()));
-  for (auto& of_policy : coverages) {
+Results measure(const std::vector<Arena>& arenas, const std::vector<Contender>& contenders,
+                const ComparisonOptions& options, const Clock& clock) {
+  Results measured(contenders.size(), std::vector<std::vector<double>>(arenas.size()));
+  for (auto& of_policy : measured) {
     for (std::size_t map = 0; map < arenas.size(); ++map) of_policy[map].resize(arenas[map].starts.size());
   }
   const std::vector<Block> blocks = make_blocks(arenas, contenders);
@@ -188,7 +196,8 @@ Coverages measure(const std::vector<Arena>& arenas, const std::vector<Contender>
     const Arena& arena = arenas[block.map];
     const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
     const std::uint64_t block_seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0]));
-    const auto policy = contenders[block.policy].make(block_seed);
+    const auto believed = options.believed.empty() ? nullptr : options.believed[block.map];
+    const auto policy = contenders[block.policy].make(block_seed, believed);
     std::vector<NodeId> starts;
     for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
     try {
@@ -196,19 +205,21 @@ Coverages measure(const std::vector<Arena>& arenas, const std::vector<Contender>
           .action_space = options.reveal.all() ? action_space_of(arena.world) : ActionSpace::kNeighbours,
           .reveal = options.reveal,
           .score = options.score,
+          .believed = believed,
           .numbers_seed = map_seed};
       const auto results = roll_out(Episode(arena.world, arena.task, walks), starts, *policy, clock, block.episodes);
       for (std::size_t i = 0; i < results.size(); ++i) {
-        coverages[block.policy][block.map][block.episodes[i]] = arena.world.percent_of_all(results[i].prize);
+        measured[block.policy][block.map][block.episodes[i]] =
+            options.until_covered ? results[i].cost : arena.world.percent_of_all(results[i].prize);
       }
     } catch (const SearchOutOfReach&) {
       out_of_reach[b] = 1;
     }
   });
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    if (out_of_reach[b] != 0) coverages[blocks[b].policy][blocks[b].map].clear();
+    if (out_of_reach[b] != 0) measured[blocks[b].policy][blocks[b].map].clear();
   }
-  return coverages;
+  return measured;
 }
 
 ComparisonOverall summarise_rows(const std::string& policy, std::span<const ComparisonRow> rows) {
@@ -271,6 +282,12 @@ std::optional<PaperResult> paper_result(const std::string& map, double budget) {
   return kPaperTable2[index];
 }
 
+double price_of_ignorance(double known, double unknown, bool costs) {
+  const double more = costs ? unknown : known;
+  const double less = costs ? known : unknown;
+  return less > 0 ? more / less : 1;
+}
+
 Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock) {
   if (options.episodes < 1) {
     throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
@@ -278,15 +295,22 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
   if (options.price_s && options.score == Score::kSeen) {
     throw Error({.what = "the price of ignorance is that of nodes visited", .got = "the score seen"});
   }
+  if (options.until_covered && (options.reveal.all() || options.budget)) {
+    throw Error({.what = "until covered goes with maps that are not known, and without a budget"});
+  }
+  if (!options.believed.empty() && (options.reveal.all() || options.believed.size() != worlds.size())) {
+    throw Error({.what = "old maps go with maps that are not known, one for each"});
+  }
+  if (options.all_starts && !options.start.empty()) throw Error({.what = "all starts, or one"});
   const std::vector<Arena> arenas = make_arenas(worlds, options, clock);
   const std::vector<Contender> contenders = make_contenders(options);
-  const Coverages coverages = measure(arenas, contenders, options, clock);
+  const Results results = measure(arenas, contenders, options, clock);
   Comparison comparison{.options = options, .rows = {}, .overall = {}, .families = {}};
   for (std::size_t policy = 0; policy < contenders.size(); ++policy) {
     const std::string& label = contenders[policy].label;
     for (std::size_t map = 0; map < arenas.size(); ++map) {
       const Arena& arena = arenas[map];
-      const std::vector<double>& values = coverages[policy][map];
+      const std::vector<double>& values = results[policy][map];
       comparison.rows.push_back(
           {.map = arena.world.name(),
            .policy = label,
@@ -302,7 +326,9 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
            .price = {}});
       if (arena.known.empty() || values.empty()) continue;
       std::vector<double> prices;
-      for (std::size_t i = 0; i < values.size(); ++i) prices.push_back(values[i] > 0 ? arena.known[i] / values[i] : 1);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        prices.push_back(price_of_ignorance(arena.known[i], values[i], options.until_covered));
+      }
       comparison.rows.back().known = summarise(arena.known);
       comparison.rows.back().price = summarise(prices);
     }

@@ -31,14 +31,20 @@ inline constexpr double kPaperBudget = 25;
 struct ComparisonOptions {
   std::vector<std::string> policies;  // as make_policy takes them
   std::optional<Budget> budget = {};  // the default is the map's own, else kPaperBudget
+  std::string start = {};             // as parse_node() takes it; the default is the map's own, else random ones
   std::string end = {};               // as parse_end() takes it; the default is the map's own, else anywhere
-  int episodes = 30;                  // per map, from its own start, else random ones, the same for every policy
+  int episodes = 30;                  // per map, from the same starts for every policy
   bool all_starts = false;            // instead: every valid node once
   std::uint64_t seed = 1;
   Reveal reveal = {};  // of unknown maps; these are walked by neighbours
   Score score = Score::kVisited;
-  // Of unknown maps: seconds that `search` may take for a walk that knows the map, from each start of each.
+  // Of unknown maps: instead of a budget, until nothing is left that is known. Costs are what is measured then.
+  bool until_covered = false;
+  // Of unknown maps: seconds that `search` may take for a walk that knows the map, from each start of each. Needed
+  // where the optimum is not computed.
   std::optional<double> price_s = {};
+  // [worlds] or empty: an old map of each unknown one, by which the policies plan that do.
+  std::vector<std::shared_ptr<const BelievedMap>> believed = {};
   std::vector<std::string> families = {};  // [worlds] or empty: the family of each, to be summarised by
   // Policies of the caller's own, by names of `policies` that are theirs. Several may be at work at once.
   std::map<std::string, std::function<std::unique_ptr<Policy>()>> own_policies = {};
@@ -46,7 +52,7 @@ struct ComparisonOptions {
 
 inline constexpr int kOptimumMaxNodes = 25;  // valid nodes up to which the optimum is computed
 
-// Coverages in percent; where there are prizes, of their sum.
+// Coverages in percent; where there are prizes, of their sum. Until covered: costs.
 struct ComparisonRow {
   std::string map;
   std::string policy;
@@ -58,11 +64,14 @@ struct ComparisonRow {
   std::optional<Summary> coverage;   // empty where the policy's search is out of reach
   std::optional<double> optimum;     // mean over the same starts; empty where out of reach
   std::optional<PaperResult> paper;  // of walks that may end anywhere, as the paper's do
-  std::optional<Summary> known;      // of walks that know the map, over the same starts; only with price_s
-  // The price of ignorance: what walks that know the map get, as a multiple of what the policy gets; the mean over
-  // starts.
+  std::optional<Summary> known;      // of unknown maps: of walks that know them, over the same starts
+  // The price of ignorance, the mean over starts.
   std::optional<Summary> price;
 };
+
+// What a walk gets that knows the map, as a multiple of what one gets that does not; of costs the other way round. 1
+// where there is nothing to divide by.
+double price_of_ignorance(double known, double unknown, bool costs);
 
 // A policy on the maps of a family: of its maps' means, or of the episodes of its only map.
 struct FamilyRow {

@@ -73,8 +73,9 @@ std::string by_share(const std::vector<ComparisonRow>& rows, const IsSo& is_so, 
   return count == 0 ? wording.none : count == std::ssize(rows) ? wording.all : wording.some;
 }
 
-std::string what_is_measured(const std::vector<ComparisonRow>& rows) {
-  return by_share(rows, [](const ComparisonRow& row) { return row.has_prizes; },
+std::string what_is_measured(const Comparison& comparison) {
+  if (comparison.options.until_covered) return "Cost until nothing is left that is known";
+  return by_share(comparison.rows, [](const ComparisonRow& row) { return row.has_prizes; },
                   {.none = "Coverage of the valid nodes in %",
                    .some = "Coverage of the valid nodes, or of the sum of prizes where a map has them, in %",
                    .all = "Coverage of the sum of prizes in %"});
@@ -82,6 +83,7 @@ std::string what_is_measured(const std::vector<ComparisonRow>& rows) {
 
 std::string budgets_of(const Comparison& comparison) {
   const auto& rows = comparison.rows;
+  if (comparison.options.until_covered) return "none";
   if (comparison.options.budget) return comparison.options.budget->text();
   const double first = rows.front().budget;
   const bool same =
@@ -95,6 +97,7 @@ std::string starts_of(const Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
   if (options.all_starts) return "every start once";
   const std::string episodes = fmt::format("{} episode{} per map", options.episodes, options.episodes == 1 ? "" : "s");
+  if (!options.start.empty()) return fmt::format("{} from {}", episodes, in_quotes(options.start));
   const auto starts = by_share(comparison.rows, [](const ComparisonRow& row) { return row.given.start != kNoNode; },
                                {.none = fmt::format("random starts (seed {})", options.seed),
                                 .some = fmt::format("the maps' own starts, else random ones (seed {})", options.seed),
@@ -119,7 +122,7 @@ std::string ends_of(const Comparison& comparison) {
 std::string format_comparison(const Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
   std::string text = fmt::format(
-      "{}{}, budget {}, {}{}\n\n", what_is_measured(comparison.rows),
+      "{}{}, budget {}, {}{}\n\n", what_is_measured(comparison),
       options.reveal.all() ? ""
                            : fmt::format(", nodes {}, of unknown maps that reveal {}",
                                          options.score == Score::kSeen ? "seen" : "visited", options.reveal.text()),
@@ -143,7 +146,8 @@ std::string format_comparison(const Comparison& comparison) {
     return std::any_of(comparison.rows.begin(), comparison.rows.end(),
                        [&](const ComparisonRow& row) { return !is_there(row); });
   };
-  if (missing([](const ComparisonRow& row) { return row.optimum.has_value(); })) {
+  const bool has_optimum = !options.until_covered && options.score == Score::kVisited;
+  if (has_optimum && missing([](const ComparisonRow& row) { return row.optimum.has_value(); })) {
     text += fmt::format("\noptimum –: not computed for maps of more than {} valid nodes or {} states\n",
                         kOptimumMaxNodes, kExactMaxStates);
   }

@@ -17,6 +17,17 @@ void step(Episode& episode, int action) {
   episode.step(action);
 }
 
+// Nodes next to ground from which no way to the end is known.
+int count_without_way_back(const Observation& now) {
+  if (now.task->ends_anywhere()) return 0;
+  const auto is_left = [&](NodeId node) {
+    return !now.ground().contains(node) && now.task->cost_to_end(node) == kNoLimit &&
+           std::ranges::any_of(now.view().into().neighbours(node),
+                               [&](NodeId before) { return now.ground().contains(before); });
+  };
+  return static_cast<int>(std::ranges::count_if(now.view().valid_nodes(), is_left));
+}
+
 }  // namespace
 
 int block_size(const World& world) {
@@ -49,7 +60,7 @@ std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const Node
   }
   std::vector<RolloutResult> results;
   results.reserve(episodes.size());
-  for (const Episode& ended : episodes) results.push_back({ended.walk_in_world(), ended.prize()});
+  for (const Episode& ended : episodes) results.push_back({ended.walk_in_world(), ended.prize(), ended.spent()});
   return results;
 }
 
@@ -85,6 +96,7 @@ Plan plan_by_steps(const World& world, const Task& task, const EpisodeOptions& o
   std::vector<NodeId> walk = episode.walk_in_world();
   if (task.ends_anywhere()) walk.resize(last_gain);
   if (discovered != nullptr) {
+    discovered->no_way_back = count_without_way_back(episode.observation());
     known.resize(walk.size());
     discovered->after_step = std::move(known);
     for (NodeId node = 0; node < discovered->after_step.back(); ++node) {

@@ -13,6 +13,7 @@ namespace graphdrl {
 struct RolloutResult {
   std::vector<NodeId> walk;  // the start first, in the world's numbers
   double prize;
+  double cost;
 };
 
 // How many episodes to walk side by side: as many as a network takes at once with profit, and fewer where their visit
@@ -29,6 +30,7 @@ std::vector<RolloutResult> roll_out(const Episode& episode, std::span<const Node
 struct Discovered {
   std::vector<NodeId> nodes;    // in the order in which they were seen
   std::vector<int> after_step;  // [steps + 1], how many of them were seen by then
+  int no_way_back = 0;          // seen and left, since no way from there to where the walk must end is known
 };
 
 // Lets a policy that chooses step by step walk one episode, and takes that for its plan, up to the last gain where it

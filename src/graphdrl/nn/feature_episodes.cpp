@@ -74,23 +74,17 @@ std::vector<std::int64_t> FirstVisitEpisodes::target_rows(int index) const {
   return rows;
 }
 
-void FirstVisitEpisodes::show_start(int index, const Episode& episode) {
-  memories_[index].visited = episode.observation().ground();
-  show(index, episode);
-}
-
 Episodes::Outcome FirstVisitEpisodes::take(int index, Episode& episode, int action) {
   Memory& memory = memories_[index];
   Outcome outcome;
   if (mask_of(index)[action]) {
     const NodeId target = memory.visits[action].node;
-    find_way(episode.view().open(), episode.position(), target, memory.visited, memory.search);
+    find_way(episode.view().open(), episode.position(), target, episode.observation().ground(), memory.search);
     std::vector<NodeId> way;  // without the current node
     memory.search.append_path_to(target, way);
     for (const NodeId node : way) {
       outcome.reward += episode.step(episode.observation().action_to(node)).reward;
     }
-    memory.visited.insert(episode.position());
   } else {
     outcome = waste(episode);
   }
@@ -103,7 +97,7 @@ void FirstVisitEpisodes::show(int index, const Episode& episode) {
   Memory& memory = memories_[index];
   const Observation now = episode.observation();
   memory.seen.clear();
-  const Exploration state(now, memory.visited);
+  const Exploration state(now, now.ground());
   const auto [visits, left_out] = encode(state, memory.scratch, memory.seen);
   memory.visits.assign(visits.begin(), visits.end());
   if (visits.empty() && left_out) {

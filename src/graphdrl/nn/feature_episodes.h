@@ -49,14 +49,13 @@ class FirstVisitEpisodes final : public Episodes {
 
  private:
   struct Memory {
-    NodeSet visited;
     ExplorerScratch scratch;
     NearestFirst search;
     ExplorerBatch seen;
     std::vector<FirstVisit> visits;
   };
 
-  void show_start(int index, const Episode& episode) override;
+  void show_start(int index, const Episode& episode) override { show(index, episode); }
   Outcome take(int index, Episode& episode, int action) override;
   void show(int index, const Episode& episode);
 

@@ -38,6 +38,17 @@ Plan plan_of_walk(const Task& task, std::vector<NodeId> walk, bool optimal) {
   return plan;
 }
 
+bool can_walk(const Task& task, std::span<const NodeId> walk) {
+  const Graph& open = task.view().open();
+  double cost = 0;
+  for (std::size_t i = 1; i < walk.size(); ++i) {
+    const int place = open.index_of(walk[i - 1], walk[i]);
+    if (place < 0) return false;
+    cost += open.cost(walk[i - 1], place);
+  }
+  return cost <= task.limit() && (task.ends_anywhere() || walk.back() == task.end());
+}
+
 Plan Planner::plan_from(const Task& task, Plan known, const Clock& clock) {
   return better_of(std::move(known), plan(task, clock));
 }

@@ -8,18 +8,6 @@ namespace {
 
 constexpr std::size_t kMostPlans = 64;  // as many as the episodes of a block in eval/rollout
 
-// Whether a walk can still be walked as the world is known now.
-bool holds(const Task& task, std::span<const NodeId> walk) {
-  const Graph& open = task.view().open();
-  double cost = 0;
-  for (std::size_t i = 1; i < walk.size(); ++i) {
-    const int place = open.index_of(walk[i - 1], walk[i]);
-    if (place < 0) return false;
-    cost += open.cost(walk[i - 1], place);
-  }
-  return cost <= task.limit() && (task.ends_anywhere() || walk.back() == task.end());
-}
-
 }  // namespace
 
 void PlannerPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock) {
@@ -46,7 +34,7 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
     return plan.task.view() == whole.view() && plan.leads_on(observation);
   });
   Plan plan;
-  if (older != plans_.end() && holds(task, older->rest(observation))) {
+  if (older != plans_.end() && can_walk(task, older->rest(observation))) {
     const std::span<const NodeId> rest = older->rest(observation);
     plan = planner_->plan_from(task, plan_of_walk(task, {rest.begin(), rest.end()}), clock);
   } else {

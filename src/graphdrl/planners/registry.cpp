@@ -10,6 +10,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/planners/baselines.h"
+#include "graphdrl/planners/believing_policy.h"
 #include "graphdrl/planners/exact.h"
 #include "graphdrl/planners/local_search.h"
 #include "graphdrl/planners/paper_policy.h"
@@ -165,6 +166,27 @@ std::unique_ptr<Policy> make_online_policy(const PolicySpec& spec, std::uint64_t
   if (spec.kind == PolicyKind::kDepthFirst) return std::make_unique<RulePolicy>(Rule::kDepthFirst);
   if (spec.kind == PolicyKind::kExplorer) return std::make_unique<OnlineExplorerPolicy>(builtin_online_explorer());
   return make_policy(spec, seed);
+}
+
+bool plans_online(const PolicySpec& spec) {
+  return plans(spec) && spec.kind != PolicyKind::kNearest && spec.kind != PolicyKind::kDepthFirst &&
+         spec.kind != PolicyKind::kExplorer;
+}
+
+std::unique_ptr<Policy> make_believing_policy(const PolicySpec& spec, std::uint64_t seed,
+                                              std::shared_ptr<const BelievedMap> old) {
+  if (!plans_online(spec)) {
+    throw Error({.what = "the policy does not plan on an old map",
+                 .expected = "search, beam, guided, exact or an explorer's file",
+                 .got = spec.label});
+  }
+  return make_believing_policy(make_planner(spec, seed), std::move(old));
+}
+
+std::unique_ptr<Policy> make_believing_policy(std::unique_ptr<Planner> planner,
+                                              std::shared_ptr<const BelievedMap> old) {
+  return std::make_unique<BelievingPolicy>(std::move(old), std::move(planner),
+                                           std::make_unique<OnlineExplorerPolicy>(builtin_online_explorer()));
 }
 
 TrainedPolicy read_policy(const std::string& name) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <variant>
 
+#include "graphdrl/env/discovery.h"
 #include "graphdrl/env/policy.h"
 #include "graphdrl/nn/paper_network.h"
 #include "graphdrl/planners/beam.h"
@@ -62,6 +63,13 @@ std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed);
 // The same for an unknown map, of which more is known with each step: rules choose anew instead of planning on, and
 // `explorer` is the online one.
 std::unique_ptr<Policy> make_online_policy(const PolicySpec& spec, std::uint64_t seed);
+
+// Whether it still plans where the map is not known: on what is known, or on an old map.
+bool plans_online(const PolicySpec& spec);
+// For an unknown map of which there is an old one: plans on what is believed. Throws Error unless plans_online().
+std::unique_ptr<Policy> make_believing_policy(const PolicySpec& spec, std::uint64_t seed,
+                                              std::shared_ptr<const BelievedMap> old);
+std::unique_ptr<Policy> make_believing_policy(std::unique_ptr<Planner> planner, std::shared_ptr<const BelievedMap> old);
 
 inline std::unique_ptr<Planner> make_planner(const std::string& name, std::uint64_t seed = 1) {
   return make_planner(parse_policy(name), seed);

@@ -225,6 +225,11 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
     json["seen"] = answer.discovered.nodes.size();
     json["seen_nodes"] = answer.discovered.nodes;
     json["seen_after_step"] = answer.discovered.after_step;
+    if (!answer.task.ends_anywhere()) json["no_way_back"] = answer.discovered.no_way_back;
+  }
+  if (answer.known) {
+    json["known"] = {{"visited", answer.known->visited}, {"prize", answer.known->prize}, {"cost", answer.known->cost}};
+    json["price_of_ignorance"] = answer.price_of_ignorance();
   }
   json["upper_bound"] = world.percent_of_all(plan.bound);
   if (world.has_prizes()) {
