@@ -36,6 +36,7 @@ inline constexpr auto kOnlineVisitFeatures = std::to_array<std::string_view>({
     "dense",             // visited nodes within two known steps
     "budget_share",      // of what is free to spend, the cost
     "depth",             // visits between those that first showed it and the current node
+    "first",             // the first of the nearest, where the order of neighbours means something, as on grids
 });
 
 inline constexpr auto kOnlineMapFeatures = std::to_array<std::string_view>({
@@ -54,6 +55,7 @@ inline constexpr auto kOnlineMapFeatures = std::to_array<std::string_view>({
     "oldest",             // how long the nearest part of the frontier has waited, in visits made
     "unlimited",          // no budget
     "home",               // an end must be reached
+    "ordered",            // the order of neighbours means something
 });
 
 inline constexpr int kOnlineVisitFeatureCount = static_cast<int>(kOnlineVisitFeatures.size());
@@ -61,13 +63,15 @@ inline constexpr int kOnlineMapFeatureCount = static_cast<int>(kOnlineMapFeature
 inline constexpr int kOnlineFeatureCount = kOnlineVisitFeatureCount + kOnlineMapFeatureCount;
 
 // How many first visits are looked at, nearest first. The first is the one that pocket would take; the second, where it
-// is about as near, the one that open would.
+// is about as near, the one that open would. OnlineScratch::first is the one that nearest would, where order means
+// something.
 inline constexpr int kOnlineVisits = 16;
 inline constexpr double kAboutAsNear = 1 + 1e-9;
 
 // Scratch memory. One thread at a time.
 struct OnlineScratch {
   std::vector<FirstVisit> visits;
+  NodeId first = kNoNode;
   std::vector<std::uint32_t> marks;  // [N]
   std::uint32_t mark = 0;
   std::vector<NodeId> queue;

@@ -3,10 +3,22 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "graphdrl/env/exploration.h"
+
 namespace graphdrl {
 namespace {
 
 constexpr std::size_t kMostPlans = 64;  // as many as the episodes of a block in eval/rollout
+// On an unknown map a plan spends no more than so many mean edges, or what this many nearest first visits would cost:
+// what lies farther off is better chosen once more is known. Of 2, 5 and no limit, 2 is best by far (docs/unknown.md).
+constexpr double kHorizon = 2;
+
+double horizon_of(const Observation& now) {
+  if (!now.view().grows()) return kNoLimit;
+  NearestFirst search;
+  const double nearest = Exploration(now, now.ground()).nearest_first_visit(search).cost;
+  return now.task->cost_to_end(now.position) + kHorizon * std::max(now.view().open().mean_cost(), nearest);
+}
 
 }  // namespace
 
@@ -27,8 +39,9 @@ std::span<const NodeId> PlannerPolicy::Followed::rest(const Observation& observa
 const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& observation, const Clock& clock) {
   const Task& whole = *observation.task;
   const bool whole_walk = observation.walk.size() == 1 && !whole.view().grows();
+  const double left = std::max(0.0, whole.budget() - observation.spent);
   const Task task = whole_walk ? whole
-                               : whole.rest(observation.position, std::max(0.0, whole.budget() - observation.spent),
+                               : whole.rest(observation.position, std::min(left, horizon_of(observation)),
                                             observation.ground());
   const auto older = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
     return plan.task.view() == whole.view() && plan.leads_on(observation);

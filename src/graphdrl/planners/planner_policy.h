@@ -11,7 +11,7 @@ namespace graphdrl {
 
 // Follows the plan of a planner and stops at its end. Plans at the start of a walk, and anew from where it stands once
 // the walk has left its plan, more is known of the world [View::version()] or others have claimed nodes; what was left
-// of the plan is where the planner goes on from then.
+// of the plan is where the planner goes on from then. Where more becomes known it plans a few steps ahead at a time.
 class PlannerPolicy final : public Policy {
  public:
   explicit PlannerPolicy(std::unique_ptr<Planner> planner) : planner_(std::move(planner)) {}
