@@ -129,7 +129,6 @@ void find_visits(const Exploration& now, NearestFirst& search, OnlineScratch& sc
         return true;
       },
       [](double) { return true; });
-  scratch.first = visits.empty() || !now.view().ordered() ? kNoNode : visits.front().node;
   if (visits.size() < 2) return;
   const View& view = now.view();
   const auto met = [&](NodeId node) {
@@ -223,11 +222,10 @@ void add_map_features(const Exploration& now, double budget, double spent, const
   add((version - oldest) / version);
   add(common.unlimited);
   add(!now.task().ends_anywhere());
-  add(view.ordered());
 }
 
 void add_visit_features(const Exploration& now, const Common& common, const FirstVisit& visit, const Around& near,
-                        std::span<const FirstVisit> visits, NodeId first, std::vector<float>& row) {
+                        std::span<const FirstVisit> visits, std::vector<float>& row) {
   const View& view = now.view();
   const double unit = common.unit;
   const double first_seen = view.first_seen(visit.node);
@@ -264,7 +262,6 @@ void add_visit_features(const Exploration& now, const Common& common, const Firs
   add(logarithm(near.dense) / 2);
   add(common.unlimited || common.free <= 0 ? 0 : std::min(visit.cost / common.free, 1.0));
   add(std::tanh((first_seen - view.first_seen(now.position())) / 8));
-  add(visit.node == first);
 }
 
 }  // namespace
@@ -279,7 +276,7 @@ std::span<const FirstVisit> encode_online(const Exploration& now, double budget,
   std::vector<float> of_map;
   add_map_features(now, budget, spent, common, visits, of_map);
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    add_visit_features(now, common, visits[i], around[i], visits, scratch.first, rows);
+    add_visit_features(now, common, visits[i], around[i], visits, rows);
     rows.insert(rows.end(), of_map.begin(), of_map.end());
   }
   return visits;

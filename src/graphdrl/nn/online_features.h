@@ -36,7 +36,6 @@ inline constexpr auto kOnlineVisitFeatures = std::to_array<std::string_view>({
     "dense",             // visited nodes within two known steps
     "budget_share",      // of what is free to spend, the cost
     "depth",             // visits between those that first showed it and the current node
-    "first",             // the first of the nearest, where the order of neighbours means something, as on grids
 });
 
 inline constexpr auto kOnlineMapFeatures = std::to_array<std::string_view>({
@@ -55,7 +54,6 @@ inline constexpr auto kOnlineMapFeatures = std::to_array<std::string_view>({
     "oldest",             // how long the nearest part of the frontier has waited, in visits made
     "unlimited",          // no budget
     "home",               // an end must be reached
-    "ordered",            // the order of neighbours means something
 });
 
 inline constexpr int kOnlineVisitFeatureCount = static_cast<int>(kOnlineVisitFeatures.size());
@@ -63,15 +61,13 @@ inline constexpr int kOnlineMapFeatureCount = static_cast<int>(kOnlineMapFeature
 inline constexpr int kOnlineFeatureCount = kOnlineVisitFeatureCount + kOnlineMapFeatureCount;
 
 // How many first visits are looked at, nearest first. The first is the one that pocket would take; the second, where it
-// is about as near, the one that open would. OnlineScratch::first is the one that nearest would, where order means
-// something.
+// is about as near, the one that open would.
 inline constexpr int kOnlineVisits = 16;
 inline constexpr double kAboutAsNear = 1 + 1e-9;
 
 // Scratch memory. One thread at a time.
 struct OnlineScratch {
   std::vector<FirstVisit> visits;
-  NodeId first = kNoNode;
   std::vector<std::uint32_t> marks;  // [N]
   std::uint32_t mark = 0;
   std::vector<NodeId> queue;

@@ -18,6 +18,7 @@ NodeId OnlineExplorerPolicy::choose(const Exploration& now, const Observation& o
                  .expected = "graphdrl explore, or evaluate --reveal",
                  .where = now.view().name()});
   }
+  if (now.view().ordered()) return now.nearest_first_visit(search()).node;
   rows_.clear();
   const auto visits = encode_online(now, observation.task->budget(), observation.spent, scratch_, search(), rows_);
   if (visits.empty()) return kNoNode;

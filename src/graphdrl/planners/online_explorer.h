@@ -16,7 +16,9 @@ using SharedOnlineExplorer = std::shared_ptr<const OnlineParameters>;
 std::string_view builtin_online_explorer_file();
 SharedOnlineExplorer builtin_online_explorer();
 
-// Makes the first visit with the highest score. Throws Error on a map that is known.
+// Makes the first visit with the highest score. Where neighbours have an order, as on cells, the nearest one, of those
+// the first: its sweeps are better than anything that the network learned there (docs/unknown.md). Throws Error on a
+// map that is known.
 class OnlineExplorerPolicy final : public FirstVisitPolicy {
  public:
   explicit OnlineExplorerPolicy(SharedOnlineExplorer parameters) : parameters_(std::move(parameters)) {}

@@ -40,9 +40,9 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
   const Task& whole = *observation.task;
   const bool whole_walk = observation.walk.size() == 1 && !whole.view().grows();
   const double left = std::max(0.0, whole.budget() - observation.spent);
-  const Task task = whole_walk ? whole
-                               : whole.rest(observation.position, std::min(left, horizon_of(observation)),
-                                            observation.ground());
+  const Task task =
+      whole_walk ? whole
+                 : whole.rest(observation.position, std::min(left, horizon_of(observation)), observation.ground());
   const auto older = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
     return plan.task.view() == whole.view() && plan.leads_on(observation);
   });

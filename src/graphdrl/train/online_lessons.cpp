@@ -19,9 +19,6 @@ constexpr float kMostApart = 8;  // values are cut so far from their mean, in % 
 // choice brings drowns in the noise of values. Of 0, 0.1, 0.4 and 1.5, 0.1 and 0.4 gave the best policies, alike
 // within the noise (docs/unknown.md).
 constexpr double kTeacherWeight = 0.3;
-// Where neighbours have an order, what each teacher would choose is plain to see, and counts more.
-constexpr double kTeacherWeightOfOrdered = 1;
-constexpr double kOrdered = 0.6;  // share of the grids that are cells, whose neighbours have an order
 constexpr int kFirstValued = 4;  // the leader's choice, and those that the network ranks highest
 
 void go_on(Episode& episode, Policy& policy) {
@@ -38,11 +35,10 @@ void walk_along(Episode& episode, std::span<const NodeId> way) {
   for (const NodeId node : way) episode.step(episode.observation().action_to(node));
 }
 
-// The other grids come as graphs, whose neighbours have no order.
+// Of cells the graph alone: where cells show directions, the network is not asked [OnlineExplorerPolicy].
 World draw_world(const OnlineLessonOptions& options, Rng& rng, std::uint64_t seed) {
   World world = random_world(options.worlds[seed % options.worlds.size()], rng);
-  if (!world.has_cells() || rng.uniform() < kOrdered) return world;
-  return World(world.name(), world.to_map());
+  return world.has_cells() ? World(world.name(), world.to_map()) : world;
 }
 
 class Lessons {
@@ -56,9 +52,7 @@ class Lessons {
         network_policy_(SharedOnlineExplorer(std::shared_ptr<void>(), &parameters)),
         pocket_(Rule::kPocket),
         open_(Rule::kOpen),
-        nearest_(Rule::kNearest),
         teachers_{{&pocket_}, {&open_}} {
-    if (world_.has_cells()) teachers_.push_back({&nearest_});
     if (!options.by_rules) teachers_.push_back({&network_policy_});
   }
 
@@ -159,17 +153,12 @@ class Lessons {
     for (std::size_t i = kFirstValued; i + 1 < order.size(); ++i) {
       std::swap(order[i], order[i + rng_.below(static_cast<std::uint32_t>(order.size() - i))]);
     }
-    const auto place_of_choice = [&](const Teacher& teacher) -> std::size_t {
-      if (teacher.policy == &pocket_) return 0;  // [kOnlineVisits]
-      if (teacher.policy == &open_) return visits[1].cost <= visits[0].cost * kAboutAsNear ? 1 : 0;
-      if (teacher.policy == &network_policy_) return std::ranges::max_element(score_) - score_.begin();
-      return std::ranges::find(visits, scratch_.first, &FirstVisit::node) - visits.begin();
-    };
-    std::vector<std::size_t> choices;
-    for (const Teacher& teacher : teachers_) choices.push_back(place_of_choice(teacher));
-    for (const std::size_t choice : choices) {
-      const auto place = std::ranges::find(order, choice);
-      if (place != order.end()) std::rotate(order.begin(), place, place + 1);
+    // What the teachers would choose, in their order. The rules' choices are the first two [kOnlineVisits].
+    const bool as_near = visits[1].cost <= visits[0].cost * kAboutAsNear;
+    const std::size_t choices[] = {0, as_near ? std::size_t{1} : 0, order.front()};
+    for (const std::size_t rule_choice : {std::size_t{1}, std::size_t{0}}) {
+      const auto place = std::ranges::find(order, rule_choice);
+      std::rotate(order.begin(), place, place + 1);
     }
     order.resize(std::min<std::size_t>(order.size(), options_.most_valued));
     OnlineLesson lesson;
@@ -181,11 +170,10 @@ class Lessons {
     const float mean =
         std::accumulate(lesson.value.begin(), lesson.value.end(), 0.0f) / static_cast<float>(lesson.value.size());
     for (float& of_visit : lesson.value) of_visit = std::clamp(of_visit - mean, -kMostApart, kMostApart);
-    const double weight = world_.has_cells() ? kTeacherWeightOfOrdered : kTeacherWeight;
     for (std::size_t i = 0; i < teachers_.size(); ++i) {
       const auto place = std::ranges::find(order, choices[i]);
       if (place == order.end()) continue;
-      lesson.value[place - order.begin()] += static_cast<float>(weight * teachers_[i].gain);
+      lesson.value[place - order.begin()] += static_cast<float>(kTeacherWeight * teachers_[i].gain);
     }
     lessons.push_back(std::move(lesson));
     return visits[order[rng_.below(static_cast<std::uint32_t>(order.size()))]].node;
@@ -198,8 +186,7 @@ class Lessons {
   OnlineExplorerPolicy network_policy_;
   RulePolicy pocket_;
   RulePolicy open_;
-  RulePolicy nearest_;
-  std::vector<Teacher> teachers_;  // pocket, open; where neighbours have an order nearest; later the network
+  std::vector<Teacher> teachers_;  // pocket, open, and the network once it values first visits
   Policy* best_ = nullptr;         // of them
   bool unlimited_ = false;
   double whole_ = 0;
