@@ -297,9 +297,7 @@ def explore(
         Error: as of `plan`; a bad `reveal` or `score`, or a time that is no time; sight without cells; a budget with
             `until_covered`; an old map of another kind, or a policy that does not plan on it.
     """
-    if policy is None:
-        policy = "explorer" if believed is None else "search:10000"
-    name, own = policy_of(policy)
+    name, own = ("", None) if policy is None else policy_of(policy)
     if flag(until_covered, "until_covered"):
         if budget is not None:
             raise Error(f"bad budget: until_covered takes none, got {shown(budget)}")

@@ -90,6 +90,34 @@ TEST(BelievingPolicy, FollowsArcsCostsNodesThatAreNewAndWaysBack) {
   EXPECT_THAT(error_of([&] { visited(grid, 6, &grid, "start"); }), ::testing::HasSubstr("ways back must be known"));
 }
 
+World path_of(std::vector<Edge> edges, std::vector<std::string> labels) {
+  const auto count = static_cast<NodeId>(labels.size());
+  return World("path", Graph::from_edges(count, edges), std::vector<bool>(labels.size()), std::move(labels));
+}
+
+TEST(BelievingPolicy, VisitsWhatIsNewBesideThePlan) {
+  const World old = path_of({{0, 1}, {1, 2}}, {"a", "b", "c"});
+  const World world = path_of({{0, 1}, {1, 2}, {1, 3}}, {"a", "b", "c", "d"});
+  EXPECT_EQ(visited(world, kNoLimit, &old), 4);
+}
+
+TEST(BelievingPolicy, EndsWhereAskedOnceTheEndIsSeen) {
+  const World world = path_of({{0, 1}, {1, 2}, {2, 3}}, {"a", "b", "c", "d"});
+  const auto believed = believe(world, world);
+  const Episode episode(
+      world, Task(world, 0, kNoLimit, End::at(3)),
+      {.action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("edges"), .believed = believed});
+  const auto policy = make_believing_policy(parse_policy("search:100"), 1, believed);
+  const NodeId start = 0;
+  EXPECT_THAT(roll_out(episode, {&start, 1}, *policy).front().walk, ::testing::ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Believe, PairsNodesByLabelOrNumber) {
+  const World numbered("n", Graph::from_edges(3, std::vector<Edge>{{0, 1}, {1, 2}}), std::vector<bool>(3));
+  const World labelled = path_of({{0, 1}, {0, 2}, {2, 3}}, {"0", "2", "1", "new"});
+  EXPECT_THAT(believe(numbered, labelled)->node_of, ::testing::ElementsAre(0, 2, 1, kNoNode));
+}
+
 TEST(Believe, RefusesMapsOfAnotherKind) {
   const World grid = grid_world("..\n..\n");
   const World wide = grid_world("...\n...\n");

@@ -106,6 +106,31 @@ def test_small_worlds_have_their_optimum_beside_them(run, tmp_path):
         assert row["known"]["mean"] >= row["coverage"]["mean"] and row["price_of_ignorance"]["mean"] >= 1
 
 
+def test_what_is_known_of_some_maps_of_a_family_is_not_known_of_the_family(run, tmp_path):
+    (tmp_path / "a.txt").write_text("....\n.#..\n....\n")
+    (tmp_path / "b.txt").write_text("......\n" * 6)
+    process = run("graphdrl", "evaluate", "--maps", tmp_path, "--reveal", "edges", "--budget", "9", "--json")
+    document = json.loads(process.stdout)
+    assert all(row["known"] is None and row["coverage"]["mean"] > 0 for row in document["families"])
+    assert [row["known"] is None for row in document["rows"][:2]] == [False, True]
+
+
+def test_planners_look_as_far_as_the_nearest_thing_worth_a_visit(run, tmp_path):
+    # A ring of arcs: to enter the next node is to go all the way round.
+    ring = tmp_path / "ring.edges"
+    ring.write_text("".join(f"{i} {(i + 1) % 11}\n" for i in range(11)))
+    arguments = ["--directed", "--reveal", "radius:20", "--until", "covered", "--end", "start", "--policy", "search:50"]
+    assert explored(run, ring, *arguments)["visited"] == 11
+    far = tmp_path / "far.graphml"
+    nodes = "".join(f'<node id="n{i}"><data key="p">{10 if i == 5 else 0}</data></node>' for i in range(6))
+    edges = "".join(f'<edge source="n{i}" target="n{i + 1}"/>' for i in range(5))
+    far.write_text(
+        '<graphml><key id="p" for="node" attr.name="prize" attr.type="int"/><graph edgedefault="undirected">'
+        f"{nodes}{edges}</graph></graphml>"
+    )
+    assert explored(run, far, "--reveal", "radius:9", "--budget", "9", "--policy", "search:50")["prize"] == 10
+
+
 def test_the_price_of_ignorance_of_one_walk(run, grid):
     covered = explored(run, grid, "--until", "covered", "--end", "start", "--price", "0.2")
     assert covered["known"]["visited"] == 40
@@ -143,6 +168,10 @@ def test_an_old_map_is_a_guess(run, grid, tmp_path):
         (["--believed", wide], "the believed map is of another kind"),
         (["--believed", old, "--policy", "pocket"], "does not plan on an old map"),
         (["--believed", old, "--end", "start"], "ways back must be known"),
+        (["--believed", old, "--score", "seen"], "an old map goes with the score visited"),
+        (["--price", "1", "--time-limit", "1"], "--time-limit"),
+        (["--price", "1", "--score", "seen"], "the price of ignorance"),
+        (["--policy", ""], "policy"),
         (["--believed", old, "--reveal", "all"], "an old map goes with a map that is not known"),
     ):
         process = run("graphdrl", "explore", grid, "--budget", "9", *arguments)

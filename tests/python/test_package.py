@@ -173,7 +173,7 @@ def test_an_old_map_is_that_of_the_command(tmp_path):
     old.write_text("......\n.#....\n...#..\n......\n")
     new.write_text("......\n.##...\n......\n......\n")
     expected = run_json("explore", new, "--believed", old, "--budget", "18", "--json")
-    worlds = [graphdrl.World.load(path) for path in (new, old)]
+    worlds = [graphdrl.World.from_file(path) for path in (new, old)]
     assert graphdrl.explore(worlds[0], 18, believed=worlds[1]).nodes.tolist() == expected["walk"]
     plan = graphdrl.explore(worlds[0], 18, believed=worlds[1], policy=graphdrl.Policy.load())
     assert plan.visited > 10

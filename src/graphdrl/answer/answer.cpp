@@ -25,7 +25,8 @@ constexpr double kCutWork = 1e7;
 constexpr double kBranchWork = 2e6;
 
 PolicySpec spec_of(const PlanRequest& request) {
-  PolicySpec spec = parse_policy(request.policy);
+  const std::string usual = request.reveal.all() ? kPlanPolicy : request.believed ? kBelievingPolicy : kOnlinePolicy;
+  PolicySpec spec = parse_policy(request.policy.empty() ? usual : request.policy);
   if (!request.iterations) return spec;
   if (spec.kind != PolicyKind::kSearch) {
     throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(request.policy, 200)});
@@ -53,6 +54,9 @@ void check_plan(const World& world, const Task& task, const Plan& plan) {
 }  // namespace
 
 Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
+  if (request.price_s && (request.reveal.all() || request.score == Score::kSeen)) {
+    throw Error({.what = "the price of ignorance is that of nodes visited on maps that are not known"});
+  }
   const Stopwatch watch;
   const Clock bound_clock = clock.share(kBoundShare);
   const Clock plan_clock = clock.share(kPlanShare);
@@ -105,9 +109,6 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   }
   check_plan(world, task, answer.plan);
   if (request.price_s) {
-    if (request.reveal.all() || request.score == Score::kSeen) {
-      throw Error({.what = "the price of ignorance is that of nodes visited on maps that are not known"});
-    }
     answer.known = make_planner("search", request.seed)->plan(task, clock.at_most(*request.price_s));
   }
   answer.plan.settle(bound);
@@ -116,7 +117,8 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   return answer;
 }
 
-double Answer::price_of_ignorance() const {
+std::optional<double> Answer::price_of_ignorance() const {
+  if (!known || (until_covered && known->visited != plan.visited)) return std::nullopt;
   return until_covered ? graphdrl::price_of_ignorance(known->cost, plan.cost, /*costs=*/true)
                        : graphdrl::price_of_ignorance(known->prize, plan.prize, /*costs=*/false);
 }
@@ -159,8 +161,10 @@ std::vector<std::string> plan_summary(const Answer& answer) {
     lines.push_back(fmt::format("{} node{} not entered: no way back is known", left, left == 1 ? " was" : "s were"));
   }
   if (answer.known) {
-    lines.push_back(fmt::format("a walk that knows the map visits {} for {}: the price of ignorance is {:.3f}",
-                                answer.known->visited, decimal(answer.known->cost), answer.price_of_ignorance()));
+    const auto price = answer.price_of_ignorance();
+    lines.push_back(fmt::format("a walk that knows the map visits {} for {}{}", answer.known->visited,
+                                decimal(answer.known->cost),
+                                price ? fmt::format(": the price of ignorance is {:.3f}", *price) : ""));
   }
   if (answer.score == Score::kSeen) return lines;
   const std::string what =

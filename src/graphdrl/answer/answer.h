@@ -28,19 +28,21 @@ struct Answer {
   std::optional<Plan> known = {};  // by a walk that knows the map, where that was asked for
   bool until_covered = false;      // costs tell walks apart, not what they visit
 
-  // What it costs not to know the map [eval/comparison.h]. REQUIRES: known.
-  double price_of_ignorance() const;
+  // What it costs not to know the map [eval/comparison.h]; empty where that was not asked for, or where costs are to be
+  // compared of walks that visit different nodes.
+  std::optional<double> price_of_ignorance() const;
 
   // By any walk, at most: all valid nodes where the plan has no bound. REQUIRES: the world has no prizes.
   int max_visited() const { return static_cast<int>(std::clamp<double>(plan.bound, 0, world.valid_count())); }
 };
 
-// Where nobody asks for another: where the map is not known, and where there is an old one besides.
+// Where nobody asks for another: where the map is known, where it is not, and where there is an old one besides.
+inline constexpr const char* kPlanPolicy = "search";
 inline constexpr const char* kOnlinePolicy = "explorer";
 inline constexpr const char* kBelievingPolicy = "search:10000";  // plans often
 
 struct PlanRequest {
-  std::string policy = "search";                // as parse_policy() takes it
+  std::string policy = {};                      // as parse_policy() takes it; empty for the default
   std::uint64_t seed = 1;                       // of `search` and of random policies
   std::optional<std::int64_t> iterations = {};  // of `search`, instead of those in its name
   Reveal reveal = {};                           // unless all is known, the policy explores instead of planning

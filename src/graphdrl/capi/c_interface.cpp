@@ -94,7 +94,6 @@ PlanRequest request_of(const graphdrl_task& task) {
   if (task.score != nullptr) request.score = parse_score(task.score);
   if (!(task.think_time_s < 0)) request.think_s = task.think_time_s;
   if (std::isnan(request.think_s)) throw Error({.what = "the think time is not a number"});
-  if (!request.reveal.all()) request.policy = kOnlinePolicy;
   if (task.policy != nullptr) request.policy = task.policy;
   return request;
 }

@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "graphdrl/answer/answer.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/machine.h"
@@ -41,12 +42,12 @@ Json to_json(const Comparison& comparison) {
     json["map"] = row.map;
     json["policy"] = row.policy;
     json["valid_nodes"] = row.valid_nodes;
-    json["budget"] = row.budget;
+    json["budget"] = comparison.options.until_covered ? Json() : Json(row.budget);
     json["episodes"] = row.episodes;
     const auto coverage = row.coverage;
     json["mean"] = coverage ? Json(coverage->mean) : Json();
     json["std"] = coverage ? or_null(coverage->std) : Json();
-    json["best"] = coverage ? Json(coverage->best) : Json();
+    json["best"] = coverage && !comparison.options.until_covered ? Json(coverage->best) : Json();
     json["ci95"] = coverage && coverage->ci95 ? Json({coverage->ci95->low, coverage->ci95->high}) : Json();
     json["optimum"] = or_null(row.optimum);
     json["paper"] = Json();
@@ -86,6 +87,9 @@ void evaluate(const EvaluateOptions& options) {
   comparison.until_covered = !options.until.empty();
   if (!comparison.reveal.all() && comparison.policies == kLadder) {
     comparison.policies = comparison.until_covered ? kUntilCoveredLadder : kOnlineLadder;
+  }
+  if (!options.believed.empty() && comparison.policies == kOnlineLadder) {
+    comparison.policies.emplace_back(kBelievingPolicy);
   }
   std::vector<World> worlds;
   for (const std::string& maps : options.maps) {
@@ -144,7 +148,7 @@ void add_evaluate_command(CLI::App& app) {
       ->capture_default_str();
   command
       .add_option("--believed", options->believed,
-                  "Old maps, by which policies plan that do: as of --maps, as many and in the same order")
+                  "Old maps for the policies that plan: as of --maps, as many and in the same order")
       ->needs(reveal)
       ->type_name("OLD");
   command
@@ -156,8 +160,8 @@ void add_evaluate_command(CLI::App& app) {
   command
       .add_option(
           "--price", options->comparison.price_s,
-          "The price of ignorance, of maps of more than 25 nodes too: seconds that search has for each walk that "
-          "knows the map")
+          "The price of ignorance where the optimum is not computed, of maps of more than 25 nodes and of costs: "
+          "seconds that search has for each walk that knows the map")
       ->check(CLI::PositiveNumber)
       ->needs(reveal)
       ->type_name("S");

@@ -89,9 +89,7 @@ void plan(const PlanOptions& options) {
   request.until_covered = until_covered;
   if (!options.believed.empty()) {
     request.believed = believe(load_one_world(options.believed, options.reading), world);
-    if (request.policy.empty()) request.policy = kBelievingPolicy;
   }
-  if (request.policy.empty()) request.policy = kOnlinePolicy;
   if (options.think_time_s) request.think_s = *options.think_time_s;
   for (const std::string& file : options.out) check_plan_file(world, file);
   catch_stop_signals();  // the best walk so far is printed
@@ -151,6 +149,7 @@ void add_plan_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
   add_shared_options(command, *options);
+  options->request.policy = kPlanPolicy;
   command.add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
   command
       .add_option("--iterations", options->request.iterations,
@@ -171,13 +170,10 @@ void add_explore_command(CLI::App& app) {
       "explore", "Explore a map that is not known beforehand, and say what knowing it would have brought");
   const auto options = std::make_shared<PlanOptions>();
   options->reveal = "edges";
-  options->request.policy = "";
   add_shared_options(command, *options);
-  command
-      .add_option(
-          "--policy", options->request.policy,
-          policy_names() + fmt::format(". The default is {}, with --believed {}", kOnlinePolicy, kBelievingPolicy))
-      ->type_name("P");
+  add_text_option(
+      command, "--policy", options->request.policy, "P",
+      fmt::format("{}. The default is {}, with --believed {}", policy_names(), kOnlinePolicy, kBelievingPolicy));
   add_text_option(
       command, "--reveal", options->reveal, "R",
       "What a visit shows: edges, those of the node; radius:R, all within that cost; sight:R on grids, what "
@@ -203,6 +199,7 @@ void add_explore_command(CLI::App& app) {
       ->type_name("S");
   command.add_option("--time-limit", options->time_limit_s, "Seconds in all; then straight to where the walk must end")
       ->type_name("S");
+  command.get_option("--price")->excludes(command.get_option("--time-limit"));
   add_seed_option(command, options->request.seed,
                   "For search, for random policies, and for the numbers by which unknown nodes are known");
   add_shared_outputs(command, *options);

@@ -7,8 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <queue>
-#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -107,15 +107,18 @@ std::shared_ptr<const BelievedMap> believe(const World& old, const World& world)
   if (old.open().directed() != world.open().directed()) refuse(world.open().directed() ? "arcs" : "edges both ways");
   if (old.open().is_complete()) refuse("a graph of which some edges are missing");
   std::vector<NodeId> node_of(world.node_count(), kNoNode);
-  if (!old.labels().empty() && !world.labels().empty()) {
-    std::unordered_map<std::string_view, NodeId> by_label;
-    for (NodeId node = 0; node < old.node_count(); ++node) by_label.emplace(old.labels()[node], node);
+  if (world.has_cells()) {
+    std::iota(node_of.begin(), node_of.end(), 0);
+  } else {
+    const auto name = [](const World& of, NodeId node) {
+      return of.labels().empty() ? std::to_string(node) : of.labels()[node];
+    };
+    std::unordered_map<std::string, NodeId> by_name;
+    for (NodeId node = 0; node < old.node_count(); ++node) by_name.emplace(name(old, node), node);
     for (NodeId node = 0; node < world.node_count(); ++node) {
-      const auto found = by_label.find(world.labels()[node]);
-      if (found != by_label.end()) node_of[node] = found->second;
+      const auto found = by_name.find(name(world, node));
+      if (found != by_name.end()) node_of[node] = found->second;
     }
-  } else if (old.labels().empty() && world.labels().empty()) {
-    for (NodeId node = 0; node < std::min(old.node_count(), world.node_count()); ++node) node_of[node] = node;
   }
   if (std::ranges::all_of(node_of, [](NodeId node) { return node == kNoNode; })) {
     throw Error({.what = "the believed map has other nodes", .expected = "the same names", .where = old.name()});
@@ -257,9 +260,6 @@ HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, 
     }
     seen_cells_.resize(world.node_count());
     rays_ = rays_within(reveal.range(), *world.map());
-  }
-  if (believed_ != nullptr && believed_->node_of[start] == kNoNode) {
-    throw Error({.what = "the start is not in the believed map", .where = believed_->world.name()});
   }
   visit(see(start));
 }

@@ -54,7 +54,7 @@ struct BelievedMap {
   std::vector<NodeId> node_of;  // [N of the world as it is], the node of the same name; kNoNode where there is none
 };
 
-// Pairs nodes by name: cells by place, others by label, and where neither has labels by number. Throws Error where the
+// Pairs nodes by name: cells by place, others by label, or number where a map has no labels. Throws Error where the
 // maps are not of one kind, cells of another size among them, and where no name is in both.
 std::shared_ptr<const BelievedMap> believe(const World& old, const World& world);
 
@@ -100,8 +100,7 @@ class Discovery {
 class HiddenWorld {
  public:
   // Begins at a node of the world, which it visits. Throws Error on a reveal that the world does not have: sight
-  // without cells; on a start that the old map does not have. seed: of the numbers of nodes. believed: null without an
-  // old map.
+  // without cells. seed: of the numbers of nodes. believed: null without an old map.
   HiddenWorld(const World& world, const Reveal& reveal, Score score, NodeId start, std::uint64_t seed,
               std::shared_ptr<const BelievedMap> believed = nullptr);
 

@@ -30,6 +30,9 @@ Episode::Episode(const World& world, const Task& task, const EpisodeOptions& opt
   if (options.action_space == ActionSpace::kDirections && (grid_ == nullptr || !options.reveal.all())) {
     throw Error({.what = "directions need a grid map that is known", .where = world.name()});
   }
+  if (options.believed != nullptr && options.score == Score::kSeen) {
+    throw Error({.what = "an old map goes with the score visited", .got = "seen", .where = world.name()});
+  }
   reset(task.start());
 }
 

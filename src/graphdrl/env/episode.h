@@ -57,7 +57,8 @@ struct StepResult {
 class Episode {
  public:
   // A walk of a task, begun at its start. Budget and end are the task's, not the options'. Throws Error on directions
-  // in a world that is no grid, or not known; on a reveal that the world does not have.
+  // in a world that is no grid, or not known; on a reveal that the world does not have; on an old map where nodes seen
+  // count: plans visit.
   Episode(const World& world, const Task& task, const EpisodeOptions& options = {});
   // The same, not begun: the task is made with each start. Throws Error on a bad budget or end, too.
   Episode(const World& world, const EpisodeOptions& options);

@@ -37,6 +37,7 @@ constexpr std::uint64_t kBlockSeeds = 3;  // of a map's policy seed
 struct Contender {
   std::string label;  // the name as given where two would share a label
   bool plans;
+  bool believes;  // where there is an old map
   // believed: an old map, or null.
   std::function<std::unique_ptr<Policy>(std::uint64_t seed, const std::shared_ptr<const BelievedMap>& believed)> make;
 };
@@ -45,7 +46,7 @@ std::vector<Contender> make_contenders(const ComparisonOptions& options) {
   std::vector<Contender> contenders;
   for (const std::string& name : options.policies) {
     if (const auto own = options.own_policies.find(name); own != options.own_policies.end()) {
-      contenders.push_back({name, false, [make = own->second](auto&&...) { return make(); }});
+      contenders.push_back({name, false, false, [make = own->second](auto&&...) { return make(); }});
     } else {
       const auto spec = std::make_shared<const PolicySpec>(parse_policy(name));
       const bool known = options.reveal.all();
@@ -56,7 +57,7 @@ std::vector<Contender> make_contenders(const ComparisonOptions& options) {
         if (believed != nullptr && plans_online(*spec)) return make_believing_policy(*spec, seed, believed);
         return known ? make_policy(*spec, seed) : make_online_policy(*spec, seed);
       };
-      contenders.push_back({spec->label, known && plans(*spec), make});
+      contenders.push_back({spec->label, known && plans(*spec), plans_online(*spec), make});
     }
   }
   std::map<std::string, std::set<std::string>> names;
@@ -90,6 +91,7 @@ std::optional<KnownResult> known_result(const World& world, const Task& task, co
   }
   if (!options.price_s) return std::nullopt;
   const Plan plan = make_planner("search", options.seed)->plan(task, clock.at_most(*options.price_s));
+  if (options.until_covered && plan.visited < std::ssize(task.reach().nodes)) return std::nullopt;  // time was short
   return KnownResult{options.until_covered ? plan.cost : world.percent_of_all(plan.prize), /*optimal=*/false};
 }
 
@@ -253,7 +255,10 @@ std::vector<FamilyRow> summarise_families(std::span<const ComparisonRow> rows,
       if (families[i] == name && rows[i].coverage) maps.push_back(&rows[i]);
     }
     const auto over = [&](std::optional<Summary> ComparisonRow::*what) -> std::optional<Summary> {
-      if (maps.empty() || !(maps.front()->*what)) return std::nullopt;
+      if (maps.empty() ||
+          !std::ranges::all_of(maps, [&](const ComparisonRow* row) { return (row->*what).has_value(); })) {
+        return std::nullopt;
+      }
       if (maps.size() == 1) return maps.front()->*what;
       std::vector<double> means;
       means.reserve(maps.size());
@@ -301,9 +306,22 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
   if (!options.believed.empty() && (options.reveal.all() || options.believed.size() != worlds.size())) {
     throw Error({.what = "old maps go with maps that are not known, one for each"});
   }
-  if (options.all_starts && !options.start.empty()) throw Error({.what = "all starts, or one"});
+  if (options.all_starts && !options.start.empty()) {
+    throw Error({.what = "both a start and all starts", .expected = "one of the two"});
+  }
+  if (options.price_s && options.reveal.all()) {
+    throw Error({.what = "the price of ignorance is that of maps that are not known", .got = "a reveal of all"});
+  }
+  const auto one_way = [](const World& world) { return world.open().directed(); };
+  if (options.until_covered && std::ranges::any_of(worlds, one_way)) {
+    throw Error({.what = "costs until covered cannot be compared where edges lead one way",
+                 .where = std::ranges::find_if(worlds, one_way)->name()});
+  }
   const std::vector<Arena> arenas = make_arenas(worlds, options, clock);
   const std::vector<Contender> contenders = make_contenders(options);
+  if (!options.believed.empty() && std::ranges::none_of(contenders, &Contender::believes)) {
+    throw Error({.what = "no policy plans on old maps", .expected = "one that plans, as search"});
+  }
   const Results results = measure(arenas, contenders, options, clock);
   Comparison comparison{.options = options, .rows = {}, .overall = {}, .families = {}};
   for (std::size_t policy = 0; policy < contenders.size(); ++policy) {

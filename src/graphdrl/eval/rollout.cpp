@@ -96,7 +96,7 @@ Plan plan_by_steps(const World& world, const Task& task, const EpisodeOptions& o
   std::vector<NodeId> walk = episode.walk_in_world();
   if (task.ends_anywhere()) walk.resize(last_gain);
   if (discovered != nullptr) {
-    discovered->no_way_back = count_without_way_back(episode.observation());
+    if (episode.hidden()) discovered->no_way_back = count_without_way_back(episode.observation());
     known.resize(walk.size());
     discovered->after_step = std::move(known);
     for (NodeId node = 0; node < discovered->after_step.back(); ++node) {

@@ -87,22 +87,39 @@ void BelievingPolicy::learn(Belief& belief) {
       as = static_cast<NodeId>(belief.ways.size());
       belief.ways.emplace_back();
       belief.seen_as.push_back(kNoNode);
-      belief.map = nullptr;
     }
     belief.believed_as.push_back(as);
     belief.seen_as[as] = node;
     belief.open.push_back(node);
-    if (as < old_->world.node_count() && old_->world.is_blocked(as)) belief.map = nullptr;
+    const World& old = old_->world;
+    const double prize_before = as < old.node_count() && !old.is_blocked(as) ? old.prize(as) : 0;
+    if (view.prize(node) == prize_before) continue;
+    belief.map = nullptr;
+    belief.news = true;
   }
   std::vector<NodeId> open;
   for (const NodeId node : std::exchange(belief.open, {})) {
     if (view.is_frontier(node)) {
       open.push_back(node);
+      take_in_edges(belief, node);
     } else {
       correct(belief, node);
     }
   }
   belief.open = std::move(open);
+}
+
+// Some of the edges that lead on from a node may be known.
+void BelievingPolicy::take_in_edges(Belief& belief, NodeId node) {
+  const Graph& open = belief.view.open();
+  Ways& ways = belief.ways[belief.believed_as[node]];
+  for (int i = 0; i < open.degree(node); ++i) {
+    const NodeId to = belief.believed_as[open.neighbours(node)[i]];
+    const auto way = find_way_to(ways, to);
+    if (way != ways.end() && way->second == open.cost(node, i)) continue;
+    put(ways, to, open.cost(node, i));
+    belief.map = nullptr;
+  }
 }
 
 // All edges that lead on from a node are known.
@@ -168,9 +185,12 @@ void BelievingPolicy::plan_anew(Belief& belief, const Observation& now, const Cl
                    end == kNoNode ? End::anywhere() : End::at(belief.believed_as[end]));
   const Task task = whole.rest(position, std::max(0.0, budget - now.spent), std::move(ground));
   const auto rest = std::span(belief.plan).subspan(belief.step);
-  if (rest.size() > 1 && can_walk(task, rest)) return;
-  belief.plan = planner_->plan_from(task, plan_of_walk(task, repaired(task, rest, search_)), clock).walk;
+  const bool holds = rest.size() > 1 && can_walk(task, rest);
+  if (holds && !belief.news) return;
+  std::vector<NodeId> walk = holds ? std::vector<NodeId>(rest.begin(), rest.end()) : repaired(task, rest, search_);
+  belief.plan = planner_->plan_from(task, plan_of_walk(task, std::move(walk)), clock).walk;
   belief.step = 0;
+  belief.news = false;
 }
 
 int BelievingPolicy::act_on(const Observation& now, const Clock& clock) {
@@ -181,13 +201,15 @@ int BelievingPolicy::act_on(const Observation& now, const Clock& clock) {
   }
   Belief& belief = belief_of(now.view());
   if (belief.trusted) {
-    const bool follows = belief.hash == now.walk_hash && belief.version > 0;
+    const bool follows = belief.hash == now.walk_hash && belief.version > 0 && belief.end == now.task->end();
     if (!follows) {
       belief.plan.clear();
       belief.step = 0;
     }
+    belief.end = now.task->end();
     learn(belief);
-    if (belief.trusted && (!follows || belief.map == nullptr)) plan_anew(belief, now, clock);
+    const bool at_end = belief.step + 1 >= belief.plan.size();
+    if (belief.trusted && (at_end || belief.map == nullptr)) plan_anew(belief, now, clock);
   }
   if (belief.trusted) {
     if (belief.step + 1 >= belief.plan.size()) return kStop;

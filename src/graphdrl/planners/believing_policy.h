@@ -13,17 +13,19 @@
 
 namespace graphdrl {
 
-// Takes the old map for true, but for what visits have shown, and follows a plan on that. Plans anew, from what is left
-// of the old plan, once that no longer holds. Where too much turned out to be wrong, or a step would leave no known way
-// to where the walk must end, it goes on by a policy that knows no old map.
+// Plans on the old map, corrected by what visits have shown, and follows the plan. Plans anew, from what is left of the
+// plan, once that cannot be walked any more, ends, or leaves out nodes or prizes that are new. Where too much turned
+// out to be wrong, or a step would leave no known way to where the walk must end, it goes on by a policy that knows no
+// old map.
 class BelievingPolicy final : public Policy {
  public:
   BelievingPolicy(std::shared_ptr<const BelievedMap> old, std::unique_ptr<Planner> planner,
                   std::unique_ptr<Policy> without)
       : old_(std::move(old)), planner_(std::move(planner)), without_(std::move(without)) {}
 
-  // Throws Error where a walk must end at a node and has a budget. Ways back must be known then, and plans on old maps
-  // come back by others: on random grids they visit less than walks without an old map. REQUIRES: the views say what
+  // Throws Error where a walk must end at a node and has a budget. Ways back must be known then, and a
+  // plan on an old map comes back by edges that may be gone: on random grids such walks visit less than those without
+  // an old map. REQUIRES: the views say what
   // the old map calls their nodes [View::believed_as()].
   void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
 
@@ -41,6 +43,8 @@ class BelievingPolicy final : public Policy {
     int wrong = 0;
     std::shared_ptr<const Known> map = {};  // null: to be made anew
     std::uint64_t version = 0;              // of the view, that is in the belief
+    bool news = false;                      // something is worth a visit that the plan knows nothing of
+    NodeId end = kNoNode;                   // of the plan's task
     std::vector<NodeId> plan = {};
     std::size_t step = 0;    // of the plan, where the walk stands
     std::uint64_t hash = 0;  // of the walk that has followed it
@@ -49,6 +53,7 @@ class BelievingPolicy final : public Policy {
   int act_on(const Observation& now, const Clock& clock);
   Belief& belief_of(const View& view);
   void learn(Belief& belief);
+  void take_in_edges(Belief& belief, NodeId node);
   void correct(Belief& belief, NodeId node);
   void plan_anew(Belief& belief, const Observation& now, const Clock& clock);
 

@@ -42,7 +42,8 @@ Plan better_of(Plan first, Plan second);
 // O(steps). REQUIRES: every other step follows an edge.
 Plan plan_of_walk(const Task& task, std::vector<NodeId> walk, bool optimal = false);
 
-// Whether a walk, its start first, follows edges to where the task must end, and can be paid for.
+// Whether a walk, its start first, follows edges to where the task must end, and can be paid for. REQUIRES: it has
+// a start.
 bool can_walk(const Task& task, std::span<const NodeId> walk);
 
 // Answers tasks. Keeps scratch memory: one thread at a time.

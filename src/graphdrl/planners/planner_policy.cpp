@@ -9,15 +9,18 @@ namespace graphdrl {
 namespace {
 
 constexpr std::size_t kMostPlans = 64;  // as many as the episodes of a block in eval/rollout
-// On an unknown map a plan spends no more than so many mean edges, or what this many nearest first visits would cost:
-// what lies farther off is better chosen once more is known. Of 2, 5 and no limit, 2 is best by far (docs/unknown.md).
+// On an unknown map a plan spends no more than so many mean edges, or than so many times the way to the nearest first
+// visit, whichever is more, and the way to the end: what lies farther off is better chosen once more is known. Of 2, 5
+// and no limit, 2 is best by far (docs/unknown.md).
 constexpr double kHorizon = 2;
 
 double horizon_of(const Observation& now) {
   if (!now.view().grows()) return kNoLimit;
   NearestFirst search;
-  const double nearest = Exploration(now, now.ground()).nearest_first_visit(search).cost;
-  return now.task->cost_to_end(now.position) + kHorizon * std::max(now.view().open().mean_cost(), nearest);
+  const FirstVisit nearest = Exploration(now, now.ground()).nearest_first_visit(search);
+  double to_end = now.task->cost_to_end(now.position);
+  if (nearest.node != kNoNode) to_end = std::max(to_end, now.task->cost_to_end(nearest.node));
+  return to_end + kHorizon * std::max(now.view().open().mean_cost(), nearest.cost);
 }
 
 }  // namespace
@@ -40,9 +43,10 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
   const Task& whole = *observation.task;
   const bool whole_walk = observation.walk.size() == 1 && !whole.view().grows();
   const double left = std::max(0.0, whole.budget() - observation.spent);
-  const Task task =
-      whole_walk ? whole
-                 : whole.rest(observation.position, std::min(left, horizon_of(observation)), observation.ground());
+  const auto with_budget = [&](double budget) {
+    return whole.rest(observation.position, budget, observation.ground());
+  };
+  const Task task = whole_walk ? whole : with_budget(std::min(left, horizon_of(observation)));
   const auto older = std::find_if(plans_.begin(), plans_.end(), [&](const Followed& plan) {
     return plan.task.view() == whole.view() && plan.leads_on(observation);
   });
@@ -53,6 +57,8 @@ const PlannerPolicy::Followed& PlannerPolicy::plan_anew(const Observation& obser
   } else {
     plan = planner_->plan(task, clock);
   }
+  // Nothing near is worth anything.
+  if (!whole_walk && plan.prize <= 0 && task.budget() < left) plan = planner_->plan(with_budget(left), clock);
   Followed followed{.task = whole,
                     .version = whole.view().version(),
                     .before = observation.walk.size() - 1,

@@ -229,7 +229,8 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
   }
   if (answer.known) {
     json["known"] = {{"visited", answer.known->visited}, {"prize", answer.known->prize}, {"cost", answer.known->cost}};
-    json["price_of_ignorance"] = answer.price_of_ignorance();
+    const auto price = answer.price_of_ignorance();
+    json["price_of_ignorance"] = price ? Json(*price) : Json();
   }
   json["upper_bound"] = world.percent_of_all(plan.bound);
   if (world.has_prizes()) {
