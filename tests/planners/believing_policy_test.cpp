@@ -90,9 +90,9 @@ TEST(BelievingPolicy, FollowsArcsCostsNodesThatAreNewAndWaysBack) {
   EXPECT_THAT(error_of([&] { visited(grid, 6, &grid, "start"); }), ::testing::HasSubstr("ways back must be known"));
 }
 
-World path_of(std::vector<Edge> edges, std::vector<std::string> labels) {
+World path_of(const std::vector<Edge>& edges, const std::vector<std::string>& labels) {
   const auto count = static_cast<NodeId>(labels.size());
-  return World("path", Graph::from_edges(count, edges), std::vector<bool>(labels.size()), std::move(labels));
+  return World("path", Graph::from_edges(count, edges), std::vector<bool>(labels.size()), labels);
 }
 
 TEST(BelievingPolicy, VisitsWhatIsNewBesideThePlan) {
