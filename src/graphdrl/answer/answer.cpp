@@ -51,6 +51,43 @@ void check_plan(const World& world, const Task& task, const Plan& plan) {
   if (!ends_well || episode.visited_count() != plan.visited) throw std::logic_error("the plan is not what it says");
 }
 
+// What makes the walk: one of the two.
+struct Chosen {
+  std::unique_ptr<Planner> planner = {};
+  std::unique_ptr<Policy> policy = {};
+};
+
+// label: what the policy is called; changed where it has a name here.
+Chosen choose(const PlanRequest& request, std::string& label) {
+  Chosen made;
+  if (request.believed != nullptr) {
+    if (request.reveal.all() || request.own_policy) {
+      throw Error({.what = "an old map goes with a map that is not known, and with a policy that plans"});
+    }
+    if (request.own_planner) {
+      made.policy = make_believing_policy(request.own_planner(), request.believed);
+    } else {
+      const PolicySpec spec = spec_of(request);
+      label = spec.label;
+      made.policy = make_believing_policy(spec, request.seed, request.believed);
+    }
+  } else if (request.own_planner && request.reveal.all()) {
+    made.planner = request.own_planner();
+  } else if (request.own_planner) {
+    made.policy = std::make_unique<PlannerPolicy>(request.own_planner());  // on what is known
+  } else if (request.own_policy) {
+    made.policy = request.own_policy();
+  } else {
+    const PolicySpec spec = spec_of(request);
+    label = spec.label;
+    if (request.reveal.all()) made.planner = make_planner(spec, request.seed);
+    if (made.planner == nullptr) {
+      made.policy = request.reveal.all() ? make_policy(spec, request.seed) : make_online_policy(spec, request.seed);
+    }
+  }
+  return made;
+}
+
 }  // namespace
 
 Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
@@ -67,33 +104,7 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
                 .reveal = request.reveal,
                 .score = request.score,
                 .until_covered = request.until_covered};
-  std::unique_ptr<Planner> planner;
-  std::unique_ptr<Policy> policy;
-  if (request.believed != nullptr) {
-    if (request.reveal.all() || request.own_policy) {
-      throw Error({.what = "an old map goes with a map that is not known, and with a policy that plans"});
-    }
-    if (request.own_planner) {
-      policy = make_believing_policy(request.own_planner(), request.believed);
-    } else {
-      const PolicySpec spec = spec_of(request);
-      answer.policy = spec.label;
-      policy = make_believing_policy(spec, request.seed, request.believed);
-    }
-  } else if (request.own_planner && request.reveal.all()) {
-    planner = request.own_planner();
-  } else if (request.own_planner) {
-    policy = std::make_unique<PlannerPolicy>(request.own_planner());  // on what is known
-  } else if (request.own_policy) {
-    policy = request.own_policy();
-  } else {
-    const PolicySpec spec = spec_of(request);
-    answer.policy = spec.label;
-    if (request.reveal.all()) planner = make_planner(spec, request.seed);
-    if (planner == nullptr) {
-      policy = request.reveal.all() ? make_policy(spec, request.seed) : make_online_policy(spec, request.seed);
-    }
-  }
+  const auto [planner, policy] = choose(request, answer.policy);
   const bool bounds = planner != nullptr && planner->bounds();
   const double bound = bounds || request.score == Score::kSeen ? kNoLimit : max_prize(task, bound_clock);
   if (planner != nullptr) {

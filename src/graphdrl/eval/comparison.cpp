@@ -60,6 +60,9 @@ std::vector<Contender> make_contenders(const ComparisonOptions& options) {
       contenders.push_back({spec->label, known && plans(*spec), plans_online(*spec), make});
     }
   }
+  if (!options.believed.empty() && std::ranges::none_of(contenders, &Contender::believes)) {
+    throw Error({.what = "no policy plans on old maps", .expected = "one that plans, as search"});
+  }
   std::map<std::string, std::set<std::string>> names;
   for (std::size_t i = 0; i < contenders.size(); ++i) names[contenders[i].label].insert(options.policies[i]);
   for (std::size_t i = 0; i < contenders.size(); ++i) {
@@ -115,6 +118,33 @@ void solve(Arena& arena, const ComparisonOptions& options, const Clock& clock) {
     arena.optimum = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   }
   if (!options.reveal.all()) arena.known = std::move(values);
+}
+
+// Throws Error on options that do not go together.
+void check_options(const std::vector<World>& worlds, const ComparisonOptions& options) {
+  if (options.episodes < 1) {
+    throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
+  }
+  if (options.price_s && options.score == Score::kSeen) {
+    throw Error({.what = "the price of ignorance is that of nodes visited", .got = "the score seen"});
+  }
+  if (options.until_covered && (options.reveal.all() || options.budget)) {
+    throw Error({.what = "until covered goes with maps that are not known, and without a budget"});
+  }
+  if (!options.believed.empty() && (options.reveal.all() || options.believed.size() != worlds.size())) {
+    throw Error({.what = "old maps go with maps that are not known, one for each"});
+  }
+  if (options.all_starts && !options.start.empty()) {
+    throw Error({.what = "both a start and all starts", .expected = "one of the two"});
+  }
+  if (options.price_s && options.reveal.all()) {
+    throw Error({.what = "the price of ignorance is that of maps that are not known", .got = "a reveal of all"});
+  }
+  const auto one_way = [](const World& world) { return world.open().directed(); };
+  if (options.until_covered && std::ranges::any_of(worlds, one_way)) {
+    throw Error({.what = "costs until covered cannot be compared where edges lead one way",
+                 .where = std::ranges::find_if(worlds, one_way)->name()});
+  }
 }
 
 std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& options, std::size_t map) {
@@ -294,34 +324,9 @@ double price_of_ignorance(double known, double unknown, bool costs) {
 }
 
 Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock) {
-  if (options.episodes < 1) {
-    throw Error({.what = "too few episodes", .expected = "at least 1", .got = std::to_string(options.episodes)});
-  }
-  if (options.price_s && options.score == Score::kSeen) {
-    throw Error({.what = "the price of ignorance is that of nodes visited", .got = "the score seen"});
-  }
-  if (options.until_covered && (options.reveal.all() || options.budget)) {
-    throw Error({.what = "until covered goes with maps that are not known, and without a budget"});
-  }
-  if (!options.believed.empty() && (options.reveal.all() || options.believed.size() != worlds.size())) {
-    throw Error({.what = "old maps go with maps that are not known, one for each"});
-  }
-  if (options.all_starts && !options.start.empty()) {
-    throw Error({.what = "both a start and all starts", .expected = "one of the two"});
-  }
-  if (options.price_s && options.reveal.all()) {
-    throw Error({.what = "the price of ignorance is that of maps that are not known", .got = "a reveal of all"});
-  }
-  const auto one_way = [](const World& world) { return world.open().directed(); };
-  if (options.until_covered && std::ranges::any_of(worlds, one_way)) {
-    throw Error({.what = "costs until covered cannot be compared where edges lead one way",
-                 .where = std::ranges::find_if(worlds, one_way)->name()});
-  }
-  const std::vector<Arena> arenas = make_arenas(worlds, options, clock);
+  check_options(worlds, options);
   const std::vector<Contender> contenders = make_contenders(options);
-  if (!options.believed.empty() && std::ranges::none_of(contenders, &Contender::believes)) {
-    throw Error({.what = "no policy plans on old maps", .expected = "one that plans, as search"});
-  }
+  const std::vector<Arena> arenas = make_arenas(worlds, options, clock);
   const Results results = measure(arenas, contenders, options, clock);
   Comparison comparison{.options = options, .rows = {}, .overall = {}, .families = {}};
   for (std::size_t policy = 0; policy < contenders.size(); ++policy) {
