@@ -89,8 +89,9 @@ def test_evaluate_until_covered_compares_costs(run, grid, tmp_path):
     assert nearest["cost"]["mean"] == walk["cost"]  # cells have no numbers to hide: each episode is the same
     asked = ["--budget", "inf", "--start", "2,0", "--end", "start", "--json"]
     tour = json.loads(run("graphdrl", "plan", grid, *asked).stdout)
-    assert tour["visited"] == 40 and nearest["known"]["mean"] == tour["cost"]
-    assert nearest["price_of_ignorance"]["mean"] == pytest.approx(walk["cost"] / tour["cost"])
+    # The plan need not be cheap where the budget pays for everything; the tour is.
+    assert tour["visited"] == 40 and nearest["known"]["mean"] < tour["cost"]
+    assert nearest["price_of_ignorance"]["mean"] == pytest.approx(walk["cost"] / nearest["known"]["mean"])
     text = run(*arguments[:-1]).stdout
     assert text.startswith("Cost until nothing is left that is known") and "3 episodes per map from '2,0'" in text
     for wrong in (["--reveal", "all"], ["--policy", "random-walk"], ["--all-starts"], ["--budget", "9"]):

@@ -120,7 +120,7 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
   }
   check_plan(world, task, answer.plan);
   if (request.price_s) {
-    answer.known = make_planner("search", request.seed)->plan(task, clock.at_most(*request.price_s));
+    answer.known = plan_knowing_the_map(task, request.until_covered, *request.price_s, request.seed, clock);
   }
   answer.plan.settle(bound);
   answer.unreachable = count_unreachable(world, task.start());

@@ -93,7 +93,7 @@ std::optional<KnownResult> known_result(const World& world, const Task& task, co
     if (const auto prize = exact_prize(task)) return KnownResult{world.percent_of_all(*prize), /*optimal=*/true};
   }
   if (!options.price_s) return std::nullopt;
-  const Plan plan = make_planner("search", options.seed)->plan(task, clock.at_most(*options.price_s));
+  const Plan plan = plan_knowing_the_map(task, options.until_covered, *options.price_s, options.seed, clock);
   if (options.until_covered && plan.visited < std::ssize(task.reach().nodes)) return std::nullopt;  // time was short
   return KnownResult{options.until_covered ? plan.cost : world.percent_of_all(plan.prize), /*optimal=*/false};
 }
@@ -315,6 +315,28 @@ std::optional<PaperResult> paper_result(const std::string& map, double budget) {
   const int index = map.back() - 'a';
   if (index < 0 || index >= std::ssize(kPaperTable2)) return std::nullopt;
   return kPaperTable2[index];
+}
+
+Plan plan_knowing_the_map(const Task& task, bool until_covered, double seconds, std::uint64_t seed,
+                          const Clock& clock) {
+  constexpr double kFirstSaving = 0.1;    // of the cost
+  constexpr double kLeastSaving = 0.001;  // likewise: the search ends where it fails to save this
+  const Clock until = clock.at_most(seconds);
+  const auto planner = make_planner("search", seed);
+  Plan best = planner->plan(task, until);
+  double saving = kFirstSaving;
+  while (until_covered && best.cost > 0 && saving >= kLeastSaving && !until.passed()) {
+    const double budget = best.cost * (1 - saving);
+    if (budget < task.cost_to_end(task.start())) break;
+    const Task cheaper(task.view(), task.start(), budget, task.ends_anywhere() ? End::anywhere() : End::at(task.end()));
+    Plan plan = planner->plan(cheaper, until);
+    if (plan.visited >= best.visited) {
+      best = std::move(plan);
+    } else {
+      saving /= 2;
+    }
+  }
+  return best;
 }
 
 double price_of_ignorance(double known, double unknown, bool costs) {

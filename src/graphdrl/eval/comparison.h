@@ -13,6 +13,7 @@
 #include "graphdrl/env/task.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/eval/statistics.h"
+#include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
 
@@ -68,6 +69,11 @@ struct ComparisonRow {
   // The price of ignorance, the mean over starts.
   std::optional<Summary> price;
 };
+
+// What `search` finds in so many seconds for a walk that knows the map. until_covered: the cheapest walk that visits
+// everything in reach: `search` looks for ever cheaper ones, since it ends with the first where the budget pays for
+// all.
+Plan plan_knowing_the_map(const Task& task, bool until_covered, double seconds, std::uint64_t seed, const Clock& clock);
 
 // What a walk gets that knows the map, as a multiple of what one gets that does not; of costs the other way round. 1
 // where there is nothing to divide by.
