@@ -320,6 +320,7 @@ std::optional<PaperResult> paper_result(const std::string& map, double budget) {
 Plan plan_knowing_the_map(const Task& task, bool until_covered, double seconds, std::uint64_t seed,
                           const Clock& clock) {
   constexpr double kFirstSaving = 0.1;    // of the cost
+  constexpr double kShare = 0.3;          // of the time left, for each try
   constexpr double kLeastSaving = 0.001;  // likewise: the search ends where it fails to save this
   const Clock until = clock.at_most(seconds);
   const auto planner = make_planner("search", seed);
@@ -329,7 +330,7 @@ Plan plan_knowing_the_map(const Task& task, bool until_covered, double seconds, 
     const double budget = best.cost * (1 - saving);
     if (budget < task.cost_to_end(task.start())) break;
     const Task cheaper(task.view(), task.start(), budget, task.ends_anywhere() ? End::anywhere() : End::at(task.end()));
-    Plan plan = planner->plan(cheaper, until);
+    Plan plan = planner->plan(cheaper, until.share(kShare));
     if (plan.visited >= best.visited) {
       best = std::move(plan);
     } else {
