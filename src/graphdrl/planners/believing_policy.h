@@ -23,10 +23,9 @@ class BelievingPolicy final : public Policy {
                   std::unique_ptr<Policy> without)
       : old_(std::move(old)), planner_(std::move(planner)), without_(std::move(without)) {}
 
-  // Throws Error where a walk must end at a node and has a budget. Ways back must be known then, and a
-  // plan on an old map comes back by edges that may be gone: on random grids such walks visit less than those without
-  // an old map. REQUIRES: the views say what
-  // the old map calls their nodes [View::believed_as()].
+  // Throws Error where a walk must end at a node and has a budget. Ways back must be known then, and a plan on an old
+  // map comes back by edges that may be gone: on random grids such walks visit less than those without an old map.
+  // REQUIRES: the views say what the old map calls their nodes [View::believed_as()].
   void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) override;
 
  private:
@@ -37,8 +36,8 @@ class BelievingPolicy final : public Policy {
     std::vector<NodeId> believed_as = {};  // [seen]
     std::vector<NodeId> seen_as = {};      // [believed nodes], kNoNode: not seen
     std::vector<NodeId> open = {};         // seen, of whose edges some may be unknown
-    std::vector<std::vector<std::pair<NodeId, double>>> ways =
-        {};         // [believed nodes], where edges lead, and their costs
+    // [believed nodes], where edges lead, and their costs.
+    std::vector<std::vector<std::pair<NodeId, double>>> ways = {};
     int right = 0;  // edges found as they were believed
     int wrong = 0;
     std::shared_ptr<const Known> map = {};  // null: to be made anew
