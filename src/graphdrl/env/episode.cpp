@@ -19,14 +19,14 @@ NodeId any_start(const World& world, const End& end) {
 }  // namespace
 
 Episode::Episode(const World& world, const Task& task, const EpisodeOptions& options)
-    : world_(world),
-      options_(options),
-      asked_(task),
-      task_(task),
-      grid_(options.action_space == ActionSpace::kDirections && world.is_grid() ? &world.view().grid() : nullptr),
-      most_free_moves_(kFreeMovesPerNode * std::int64_t{world.node_count()}),
+    : grid_(options.action_space == ActionSpace::kDirections && world.is_grid() ? &world.view().grid() : nullptr),
       visits_(world.node_count()),
-      visited_(world.node_count()) {
+      most_free_moves_(kFreeMovesPerNode * std::int64_t{world.node_count()}),
+      visited_(world.node_count()),
+      options_(options),
+      task_(task),
+      world_(world),
+      asked_(task) {
   if (options.action_space == ActionSpace::kDirections && (grid_ == nullptr || !options.reveal.all())) {
     throw Error({.what = "directions need a grid map that is known", .where = world.name()});
   }
@@ -115,29 +115,31 @@ StepResult Episode::enter(NodeId next, double cost) {
   const bool blocked = next == position_;
   const std::uint32_t visits_before = visits_[next]++;
   const bool first_visit = visits_before == 0;
-  visited_count_ += first_visit;
   position_ = next;
-  const double seen_before = counts_seen() ? view().total_prize() : 0;
-  if (first_visit) {
-    prize_ += view().prize(next);
-    if (!hidden()) {
-      visited_.insert(next);
-    } else {
-      hidden_->visit(next);
-      visits_.resize(view().node_count());
-    }
-  }
   walk_.push_back(next);
   walk_hash_ = extended_walk_hash(walk_hash_, next);
   const double spent_before = spent_;
   spent_ += cost;
   free_moves_ = first_visit || spent_ > spent_before ? 0 : free_moves_ + 1;
-  if (first_visit) settle_end();
-  const double gained = counts_seen() ? view().total_prize() - seen_before : first_visit ? view().prize(next) : 0;
+  const double gained = first_visit ? visit(next) : 0;
   return {.reward = reward_of(blocked, visits_before, gained), .blocked = blocked, .first_visit = first_visit};
 }
 
-// gained: of what is counted.
+// The first visit of the node where the walk now is. Returns what it gains of what is counted.
+double Episode::visit(NodeId node) {
+  ++visited_count_;
+  prize_ += view().prize(node);
+  if (!hidden()) {
+    visited_.insert(node);
+    return view().prize(node);
+  }
+  const double seen_before = view().total_prize();
+  hidden_->visit(node);
+  visits_.resize(view().node_count());
+  settle_end();
+  return counts_seen() ? view().total_prize() - seen_before : view().prize(node);
+}
+
 double Episode::reward_of(bool blocked, std::uint32_t visits_before, double gained) const {
   const bool first_visit = visits_before == 0;
   const double bonus = first_visit && terminal() ? kFullCoverageBonus : 0.0;
