@@ -14,6 +14,7 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BIN = pathlib.Path(os.environ["GRAPHDRL_BIN"])
+TRAINING = ["train", "--episodes", "25", "--batch-size", "8"]  # of the fixture `trained`
 WITH_TORCH = (BIN / "graphdrl-train").exists()  # the build has LibTorch, and OpenBLAS with it
 DTYPES = {"F32": "<f4", "F64": "<f8", "I32": "<i4", "I64": "<i8", "U8": "u1", "U16": "<u2", "U64": "<u8"}
 # What is started in the background ignores Ctrl-C, and so would all that the tests start.
@@ -62,7 +63,7 @@ def trained(tmp_path_factory):
     with (base / "trained.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not summary.exists():
-            command = [BIN / "graphdrl", "train", "--episodes", "25", "--out", folder, "--json"]
+            command = [BIN / "graphdrl", *TRAINING, "--out", folder, "--json"]
             process = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True)
             summary.write_text(process.stdout)
     return folder, json.loads(summary.read_text())

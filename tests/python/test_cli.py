@@ -12,7 +12,7 @@ import time
 
 import pytest
 
-from conftest import BIN, WITH_TORCH, read_safetensors
+from conftest import BIN, TRAINING, WITH_TORCH, read_safetensors
 
 MAP_A = "...#.\n.###.\n.#...\n.#...\n.....\n"
 
@@ -452,7 +452,7 @@ def test_config_reads_a_run_back(run, trained, tmp_path):
 def test_interrupted_training_goes_on_where_it_was(run, trained, tmp_path, number, status):
     whole, _ = trained
     folder = tmp_path / "run"
-    command = [BIN / "graphdrl", "train", "--episodes", "25", "--out", folder]
+    command = [BIN / "graphdrl", *TRAINING, "--out", folder]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while process.poll() is None and not (folder / "metrics.jsonl").exists():
         time.sleep(0.05)
@@ -470,7 +470,7 @@ def test_interrupted_training_goes_on_where_it_was(run, trained, tmp_path, numbe
 
 
 def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
-    training = ["train", "--preset", "paper", "--episodes", "10", "--batch-size", "8"]
+    training = ["train", "--preset", "paper", "--episodes", "10", "--batch-size", "2"]
     process = run("graphdrl", *training, "--seeds", "1-2,5", "--out", "all", "--threads", "2", "--json", cwd=tmp_path)
     assert process.returncode == 0, process.stderr
     runs = json.loads(process.stdout)["runs"]
@@ -507,7 +507,7 @@ def test_many_seeds_train_side_by_side_and_become_a_distribution(run, tmp_path):
 
 
 def test_a_kill_in_the_middle_of_many_seeds_changes_nothing(run, tmp_path):
-    training = ["train", "--preset", "paper", "--episodes", "30", "--batch-size", "8", "--seeds", "3-4"]
+    training = ["train", "--preset", "paper", "--episodes", "30", "--batch-size", "4", "--seeds", "3-4"]
     assert run("graphdrl", *training, "--out", tmp_path / "whole").returncode == 0
     command = [BIN / "graphdrl", *training, "--out", tmp_path / "killed"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -580,12 +580,11 @@ def test_network_policies_take_large_maps(run, trained, tmp_path):
     assert result["rows"][0]["valid_nodes"] == 4900
 
 
-def test_bench_gives_the_documented_keys_and_one_signature(run):
+def test_bench_gives_the_documented_keys(run):
     first = json.loads(run("graphdrl", "bench", "--json").stdout)
     assert list(first) == "signature signature_learned env_steps_per_s move_ms learning_step_ms".split()
     for key in ("env_steps_per_s", "learning_step_ms"):
         assert list(first[key]) == ["1", "2"] and all(value > 0 for value in first[key].values())
-    assert first["signature"] in run("graphdrl", "bench").stdout
 
 
 def plan(run, *arguments):

@@ -153,7 +153,7 @@ def test_plans_within_any_memory(run, tmp_path, grid, name):
 def test_trainings_within_any_memory(run, tmp_path, preset):
     short = {
         "paper": ["--episodes", "2", "--batch-size", "8"],
-        "explorer": ["--rounds", "1", "--walks", "4", "--largest", "5"],
+        "explorer": ["--rounds", "1", "--walks", "4", "--updates", "4", "--largest", "5"],
     }
     command = ["train", "--preset", preset, *short[preset], "--threads", "1"]
     whole = run("graphdrl", *command, "--out", tmp_path / "whole")

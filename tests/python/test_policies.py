@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 PROGRAM = pathlib.Path(os.environ["GRAPHDRL_BIN"]) / "graphdrl"
-SHORT = {"episodes": 12, "seed": 3}
+SHORT = {"episodes": 12, "batch_size": 4, "seed": 3}
 
 
 def run_program(*arguments):
@@ -54,7 +54,7 @@ def random_states(count, families):
 
 def test_training_gives_the_programs_bytes(paper, tmp_path):
     run, rows = paper
-    done = run_program("train", "--preset", "paper", "--episodes", 12, "--seed", 3, "--out", tmp_path / "run")
+    done = run_program("train", "--preset", "paper", "--episodes", 12, "--batch-size", 4, "--seed", 3, "--out", tmp_path / "run")
     assert done.returncode == 0, done.stderr
     for name in ("policy.safetensors", "config.json", "metrics.jsonl"):
         assert (run.path / name).read_bytes() == (tmp_path / "run" / name).read_bytes(), name
