@@ -15,6 +15,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -170,6 +171,11 @@ class Task {
   }
   // Seconds for each choice of an exploration, of policies that plan.
   Task& think(double seconds) { return set(task_.think_time_s, seconds); }
+  // Explores with an old map, of which some may have changed. The policy is then search:10000, unless it is set.
+  Task& believed(World old) {
+    believed_ = std::move(old);
+    return *this;
+  }
   // Instead of a budget, of an exploration: until nothing is left that is known.
   Task& until_covered() {
     task_.relative = 0;
@@ -202,6 +208,7 @@ class Task {
     if (!policy_.empty()) task.policy = policy_.c_str();
     if (!reveal_.empty()) task.reveal = reveal_.c_str();
     if (counts_seen_) task.score = "seen";
+    if (believed_) task.believed = believed_->get();
     if (progress_) {
       task.progress_data = &call;
       task.progress = [](std::int32_t visited, double bound, void* data) -> std::int32_t {
@@ -221,6 +228,7 @@ class Task {
   std::string policy_;
   std::string reveal_;
   bool counts_seen_ = false;
+  std::optional<World> believed_;
   std::function<bool(std::int32_t, double)> progress_;
 };
 

@@ -103,6 +103,9 @@ typedef struct graphdrl_task {
   const char* reveal;  /* what a visit shows: "edges", "radius:R" or "sight:R"; NULL: all is known beforehand */
   const char* score;   /* what counts, nodes "visited" or "seen"; NULL: visited */
   double think_time_s; /* seconds for each choice, of policies that plan; below 0: none */
+  /* An old map, of which some may have changed, as of `graphdrl explore --believed`; NULL: there is none. Read while
+   * graphdrl_plan() is called. The policy is search:10000 where it is NULL. */
+  const graphdrl_world* believed;
 } graphdrl_task;
 
 /* Sets the fields that a struct of this size has. */

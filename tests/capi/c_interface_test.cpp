@@ -93,6 +93,34 @@ TEST(CInterface, ExploresAPathWorkedOutByHand) {
   EXPECT_NE(std::string(graphdrl_result_json(result.handle)).find("\"policy\":\"explorer\""), std::string::npos);
 }
 
+// From 0, where 1 and 4 are seen, both as near. The old map has the ring but for the edge that came since.
+TEST(CInterface, ExploresByAnOldMap) {
+  Owned<graphdrl_world> world;
+  Owned<graphdrl_world> old;
+  const std::vector<std::int32_t> edges = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 0, 4};
+  ASSERT_EQ(graphdrl_world_from_edges("now", 6, 6, edges.data(), nullptr, 0, nullptr, nullptr, &world.handle),
+            GRAPHDRL_DONE);
+  ASSERT_EQ(graphdrl_world_from_edges("old", 6, 5, edges.data(), nullptr, 0, nullptr, nullptr, &old.handle),
+            GRAPHDRL_DONE);
+  graphdrl_task task = task_of(5);
+  task.reveal = "edges";
+  task.believed = old.handle;
+  Owned<graphdrl_result> result;
+  ASSERT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_DONE) << graphdrl_last_error();
+  EXPECT_EQ(graphdrl_result_visited(result.handle), 6) << "round the ring to 5";
+  task.reveal = nullptr;
+  EXPECT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_BAD_INPUT);
+  EXPECT_EQ(std::string(graphdrl_last_error()),
+            "an old map goes with a map that is not known, and with a policy that plans");
+  task.reveal = "edges";
+  Owned<graphdrl_world> cells;
+  const std::vector<unsigned char> blocked(6);
+  ASSERT_EQ(graphdrl_world_from_grid("cells", 2, 3, blocked.data(), 0, &cells.handle), GRAPHDRL_DONE);
+  task.believed = cells.handle;
+  EXPECT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_BAD_INPUT);
+  EXPECT_NE(std::string(graphdrl_last_error()).find("the believed map is of another kind"), std::string::npos);
+}
+
 // What stands behind the fields of an older header is not looked at.
 TEST(CInterface, TakesTheTaskOfAnOlderHeader) {
   Owned<graphdrl_world> world;
@@ -254,6 +282,8 @@ TEST(CppHeader, ExploresUntilNothingIsLeft) {
   EXPECT_EQ(seen.seen().size(), 4u);
   EXPECT_TRUE(std::isinf(seen.bound()));
   EXPECT_TRUE(graphdrl::plan(world, graphdrl::Task(4)).seen().empty());
+  const graphdrl::Plan by_old_map = graphdrl::plan(world, graphdrl::Task(8).from(1).reveal("edges").believed(world));
+  EXPECT_EQ(by_old_map.walk(), (std::vector<std::int32_t>{1, 0, 1, 2, 3}));
 }
 
 TEST(CppHeader, ThrowsWhatGoesWrongAndWhatProgressThrows) {

@@ -124,8 +124,8 @@ std::vector<NodeId> explore(Episode& episode, Policy& policy, int visits = 1 << 
   return episode.walk_in_world();
 }
 
-const std::vector<std::string> kPolicies = {"nearest", "dfs",       "pocket",   "open",       "frontier",
-                                            "beam:3",  "search:40", "explorer", "random-walk"};
+const std::vector<std::string> kPolicies = {"nearest", "dfs",    "pocket",    "open",     "frontier",
+                                            "tour",    "beam:3", "search:40", "explorer", "random-walk"};
 
 // What is not seen may be anything: edges between nodes that were not visited.
 TEST(HiddenWorld, LetsNothingThroughThatWasNotSeen) {

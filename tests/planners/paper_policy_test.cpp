@@ -61,7 +61,8 @@ TEST(Registry, MakesPoliciesByNameAndFile) {
   const TemporaryFolder folder;
   Rng rng(1);
   write_policy_file(folder / "mine.safetensors", PaperParameters(rng));
-  for (const char* name : {"random", "random-walk", "dfs", "nearest", "exact", "search", "search:7"}) {
+  for (const char* name :
+       {"random", "random-walk", "dfs", "nearest", "exact", "search", "search:7", "tour", "tour:8"}) {
     EXPECT_NE(make_policy(name, 1), nullptr);
     EXPECT_EQ(parse_policy(name).label, name);
   }
@@ -70,10 +71,12 @@ TEST(Registry, MakesPoliciesByNameAndFile) {
   EXPECT_EQ(parse_policy(file).label, "mine");
   EXPECT_THAT(error_of([] { make_policy("best", 1); }),
               HasSubstr("expected search[:ITERATIONS], beam[:W], guided[:W[:FILE]], dfs, exact, explorer, frontier, "
-                        "nearest, open, pocket, random, random-walk or a "
-                        "policy file, got 'best'"));
+                        "nearest, open, pocket, random, random-walk, tour[:M] or a policy file, got 'best'"));
   for (const char* const name : {"search:0", "search:", "search:x", "search:-1", "search:1.5"}) {
     EXPECT_THAT(error_of([&] { make_policy(name, 1); }), HasSubstr("search:N with N from 1 to ")) << name;
+  }
+  for (const char* const name : {"tour:0", "tour:", "tour:1.5", "tour:1000001"}) {
+    EXPECT_THAT(error_of([&] { make_policy(name, 1); }), HasSubstr("tour:M with M from 1 to 1000000")) << name;
   }
 }
 

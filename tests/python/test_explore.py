@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-RULES = ["nearest", "dfs", "pocket", "open", "frontier"]
+RULES = ["nearest", "dfs", "pocket", "open", "frontier", "tour"]
 
 
 @pytest.fixture(scope="module")

@@ -239,7 +239,8 @@ void graphdrl_task_init_sized(graphdrl_task* task, size_t size) {
                                .progress_data = nullptr,
                                .reveal = nullptr,
                                .score = nullptr,
-                               .think_time_s = -1};
+                               .think_time_s = -1,
+                               .believed = nullptr};
   std::memcpy(task, &whole, std::min(size, sizeof whole));
 }
 
@@ -250,6 +251,8 @@ graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* 
     require(world, "the world");
     const graphdrl_task whole = whole_task(task);
     const Task asked(world->world, asked_of(world->world, whole));
+    PlanRequest request = request_of(whole);
+    if (whole.believed != nullptr) request.believed = believe(whole.believed->world, world->world);
     // Tells the caller how far it is, until the caller stops it.
     std::atomic<bool> stopped = false;
     const ProgressListener listener = [&](const Progress& news) {
@@ -257,7 +260,7 @@ graphdrl_status graphdrl_plan(const graphdrl_world* world, const graphdrl_task* 
       stopped = whole.progress(news.visited, news.bound, whole.progress_data) != 0;
     };
     const Clock clock(time_limit_of(whole), &stopped, &listener);
-    *result = new graphdrl_result(make_plan(world->world, asked, request_of(whole), clock));
+    *result = new graphdrl_result(make_plan(world->world, asked, request, clock));
   });
 }
 

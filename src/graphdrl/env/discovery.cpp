@@ -134,23 +134,24 @@ Discovery::Discovery(const Discovery& other)
       view_(known_),
       to_end_(other.to_end_ ? std::make_shared<std::vector<double>>(*other.to_end_) : nullptr) {}
 
-NodeId Discovery::see(double prize, std::optional<NodeId> believed_as) {
+NodeId Discovery::see(const Seen& seen) {
   Known& known = *known_;
   const NodeId node = known.open.add_node();
   if (known.into) {
     known.into->add_node();
     known.both_ways->add_node();
   }
-  if (known.prizes.empty() && prize != 1) known.prizes.assign(node, 1);
-  if (!known.prizes.empty()) known.prizes.push_back(prize);
+  if (known.prizes.empty() && seen.prize != 1) known.prizes.assign(node, 1);
+  if (!known.prizes.empty()) known.prizes.push_back(seen.prize);
   known.blocked.push_back(false);
   known.valid_nodes.push_back(node);
-  known.total_prize += prize;
+  known.total_prize += seen.prize;
   known.frontier.push_back(true);
   known.first_seen.push_back(static_cast<std::uint32_t>(known.version));
   known.seen_at.push_back(static_cast<std::uint32_t>(known.version));
   known.frontier_neighbours.push_back(0);
-  if (believed_as) known.believed_as.push_back(*believed_as);
+  if (seen.believed_as) known.believed_as.push_back(*seen.believed_as);
+  if (seen.place) known.places.push_back(*seen.place);
   ++known.frontier_count;
   known.recent.push_back(node);
   if (to_end_ != nullptr) to_end_->push_back(kNoLimit);
@@ -165,6 +166,10 @@ void Discovery::connect(const Edge& edge, const Graph::Places& places) {
   if (known.into) {
     known.into->add_edge({edge.b, edge.a, edge.cost});
     if (!joined) known.both_ways->add_edge({edge.a, edge.b, 1});
+  }
+  if (!known.places.empty()) {
+    known.placed_costs += edge.cost;
+    known.placed_lengths += length_between(known.places[edge.a], known.places[edge.b]);
   }
   if (!joined) {
     known.frontier_neighbours[edge.a] += known.frontier[edge.b];
@@ -267,7 +272,10 @@ HiddenWorld::HiddenWorld(const World& world, const Reveal& reveal, Score score, 
 NodeId HiddenWorld::see(NodeId in_world) {
   NodeId& node = known_as_[in_world];
   if (node != kNoNode) return node;
-  node = discovery_.see(world_.prize(in_world), believed_ ? std::optional(believed_->node_of[in_world]) : std::nullopt);
+  Discovery::Seen seen{.prize = world_.prize(in_world)};
+  if (believed_) seen.believed_as = believed_->node_of[in_world];
+  if (world_.has_places()) seen.place = world_.place(in_world);
+  node = discovery_.see(seen);
   in_world_.push_back(in_world);
   ground_.grow(node + 1);
   return node;

@@ -68,9 +68,15 @@ class Discovery {
 
   const View& view() const { return view_; }
 
-  // A new node is seen, on the frontier. prize: of its first visit. believed_as: its node in an old map, kNoNode where
-  // that has none; empty without an old map, of all nodes or of none.
-  NodeId see(double prize = 1, std::optional<NodeId> believed_as = {});
+  // Of all nodes or of none: a node of an old map, and a place.
+  struct Seen {
+    double prize = 1;                        // of its first visit
+    std::optional<NodeId> believed_as = {};  // its node in an old map, kNoNode where that has none
+    std::optional<Point> place = {};
+  };
+  // A new node is seen, on the frontier.
+  NodeId see(const Seen& seen);
+  NodeId see() { return see(Seen()); }
   // Makes an edge between nodes seen known; does nothing where it is. Frontier nodes at its ends are seen again.
   // places: as Graph::add_edge().
   void connect(const Edge& edge, const Graph::Places& places = {});

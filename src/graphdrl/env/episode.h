@@ -115,7 +115,8 @@ class Episode {
   double visit(NodeId node);
   double reward_of(bool blocked, std::uint32_t visits_before, double gained) const;
 
-  // Every step reads or writes these. They come first, side by side: of a thousand episodes little else is in the cache.
+  // Every step reads or writes these. They come first, side by side: of a thousand episodes little else is in the
+  // cache.
   std::shared_ptr<HiddenWorld> hidden_;  // null where the map is known
   const KnownGrid* grid_;                // of directions; else null
   NodeId position_ = kNoNode;

@@ -1,6 +1,7 @@
 // Where nodes lie.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,10 @@ struct Point {
   double y;
   friend bool operator==(const Point&, const Point&) = default;
 };
+
+inline double length_between(const Point& a, const Point& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
+}
 
 // Of the nodes of a graph, y upward.
 struct Places {

@@ -26,7 +26,7 @@ struct PolicyName {
   std::string_view parameters = {};  // as help shows them
 };
 
-constexpr std::array<PolicyName, 12> kNames = {{{"search", PolicyKind::kSearch, "[:ITERATIONS]"},
+constexpr std::array<PolicyName, 13> kNames = {{{"search", PolicyKind::kSearch, "[:ITERATIONS]"},
                                                 {"beam", PolicyKind::kBeam, "[:W]"},
                                                 {"guided", PolicyKind::kGuided, "[:W[:FILE]]"},
                                                 {"dfs", PolicyKind::kDepthFirst},
@@ -37,7 +37,10 @@ constexpr std::array<PolicyName, 12> kNames = {{{"search", PolicyKind::kSearch, 
                                                 {"open", PolicyKind::kOpen},
                                                 {"pocket", PolicyKind::kPocket},
                                                 {"random", PolicyKind::kRandom},
-                                                {"random-walk", PolicyKind::kRandomWalk}}};
+                                                {"random-walk", PolicyKind::kRandomWalk},
+                                                {"tour", PolicyKind::kTour, "[:M]"}}};
+
+constexpr std::int64_t kMostFirstVisits = 1'000'000;  // of a part of the frontier
 
 // A whole number from 1 to `most`; empty where the text is none.
 std::optional<std::int64_t> parse_count(std::string_view text, std::int64_t most) {
@@ -65,6 +68,12 @@ void parse_parameters(const std::string& name, std::string_view text, PolicySpec
     spec.iterations = *iterations;
     return;
   }
+  if (spec.kind == PolicyKind::kTour) {
+    const auto smallest = parse_count(text, kMostFirstVisits);
+    check(smallest.has_value(), "bad size of a frontier", fmt::format("tour:M with M from 1 to {}", kMostFirstVisits));
+    spec.smallest_part = static_cast<int>(*smallest);
+    return;
+  }
   const std::size_t colon = spec.kind == PolicyKind::kGuided ? text.find(':') : std::string_view::npos;
   const std::string file(colon == std::string_view::npos ? "" : text.substr(colon + 1));
   check(colon == std::string_view::npos || !file.empty(), "no policy file is named", "guided:W:FILE");
@@ -81,6 +90,7 @@ std::optional<Rule> rule_of(PolicyKind kind) {
   if (kind == PolicyKind::kPocket) return Rule::kPocket;
   if (kind == PolicyKind::kOpen) return Rule::kOpen;
   if (kind == PolicyKind::kFrontier) return Rule::kFrontier;
+  if (kind == PolicyKind::kTour) return Rule::kTour;
   return std::nullopt;
 }
 
@@ -125,6 +135,7 @@ std::unique_ptr<Planner> make_planner(const PolicySpec& spec, std::uint64_t seed
     case PolicyKind::kPocket:
     case PolicyKind::kOpen:
     case PolicyKind::kFrontier:
+    case PolicyKind::kTour:
       return nullptr;
     case PolicyKind::kDepthFirst:
       return std::make_unique<DepthFirstPlanner>();
@@ -153,7 +164,7 @@ std::unique_ptr<Policy> make_policy(const PolicySpec& spec, std::uint64_t seed) 
   if (spec.kind == PolicyKind::kRandom || spec.kind == PolicyKind::kRandomWalk) {
     return std::make_unique<RandomPolicy>(seed, /*blocked_too=*/spec.kind == PolicyKind::kRandom);
   }
-  if (const auto rule = rule_of(spec.kind)) return std::make_unique<RulePolicy>(*rule);
+  if (const auto rule = rule_of(spec.kind)) return std::make_unique<RulePolicy>(*rule, spec.smallest_part);
   if (auto planner = make_planner(spec, seed)) return std::make_unique<PlannerPolicy>(std::move(planner));
   if (const auto* const online = std::get_if<SharedOnlineExplorer>(&spec.trained)) {
     return std::make_unique<OnlineExplorerPolicy>(*online);

@@ -21,7 +21,8 @@ enum class PolicyKind {
   kRandomWalk,
   kPocket,
   kOpen,
-  kFrontier,  // these choose step by step, and so do the paper's networks in files; others plan whole walks
+  kFrontier,
+  kTour,  // these choose step by step, and so do the paper's networks in files; others plan whole walks
   kDepthFirst,
   kNearest,
   kBeam,
@@ -44,13 +45,14 @@ struct PolicySpec {
   PolicyKind kind;
   int width = BeamOptions{}.width;  // of beam and guided
   std::int64_t iterations = 0;      // of search; 0: as many as the world's size asks for, or the time allows
+  int smallest_part = 1;            // of tour: smaller parts of the frontier wait
   TrainedPolicy trained = {};       // of kFile; of guided, null for the explorer in the program
   std::string label = {};           // in tables: the name given, a file's stem
 };
 
-// `random`, `random-walk`, `dfs`, `nearest`, `pocket`, `open`, `frontier`, `beam[:W]`, `guided[:W[:FILE]]`, `explorer`,
-// `search[:ITERATIONS]`, `exact`, or a policy file, which is read here. Throws Error on any other name, and on a file
-// that holds no policy.
+// `random`, `random-walk`, `dfs`, `nearest`, `pocket`, `open`, `frontier`, `tour[:M]`, `beam[:W]`, `guided[:W[:FILE]]`,
+// `explorer`, `search[:ITERATIONS]`, `exact`, or a policy file, which is read here. Throws Error on any other name, and
+// on a file that holds no policy.
 PolicySpec parse_policy(const std::string& name);
 
 // Whether it plans whole walks.

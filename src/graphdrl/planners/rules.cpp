@@ -1,11 +1,12 @@
 #include "graphdrl/planners/rules.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
 
 #include "graphdrl/base/random.h"
+#include "graphdrl/planners/frontier.h"
 
 namespace graphdrl {
 namespace {
@@ -57,7 +58,12 @@ bool always(double /*cost*/) {
   return true;
 }
 
+constexpr std::uint64_t kTourHeldFor = 15;  // visits; docs/unknown.md
+
 }  // namespace
+
+RulePolicy::RulePolicy(Rule rule, int smallest_part)
+    : FirstVisitPolicy(rule == Rule::kTour ? kTourHeldFor : 0), rule_(rule), smallest_part_(smallest_part) {}
 
 void FirstVisitPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
   for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i]);
@@ -66,7 +72,7 @@ void FirstVisitPolicy::act(std::span<const Observation> observations, std::span<
 int FirstVisitPolicy::act_on(const Observation& now) {
   auto trip = std::ranges::find_if(
       trips_, [&](const Trip& one) { return one.hash == now.walk_hash && one.view == now.view(); });
-  if (trip == trips_.end() || trip->way.empty() || trip->version != now.view().version()) {
+  if (trip == trips_.end() || !goes_on(*trip, now)) {
     const Exploration exploration(now, now.ground());
     NodeId goal = choose(exploration, now);
     if (goal == kNoNode) {
@@ -97,8 +103,18 @@ int FirstVisitPolicy::act_on(const Observation& now) {
   return action;
 }
 
+// What was chosen is held for some visits, while it is new and the way there can be paid for.
+bool FirstVisitPolicy::goes_on(const Trip& trip, const Observation& now) const {
+  if (trip.way.empty()) return false;
+  if (trip.version == now.view().version()) return true;
+  return now.view().version() - trip.version < held_for_ && !now.ground().contains(trip.way.front()) &&
+         now.affordable(now.action_to(trip.way.back()));
+}
+
 NodeId RulePolicy::choose(const Exploration& now, const Observation& observation) {
   switch (rule_) {
+    case Rule::kTour:
+      return begin_of_frontier_tour(now, search(), smallest_part_);
     case Rule::kDepthFirst:
       return choose_last_seen(now, observation.walk_hash);
     case Rule::kFrontier:
@@ -147,45 +163,15 @@ NodeId RulePolicy::choose_last_seen(const Exploration& now, std::uint64_t walk_h
   return best.node();
 }
 
-// The frontier falls into parts: first visits next to each other, or next to the same visited node.
 NodeId RulePolicy::choose_by_frontier(const Exploration& now) {
-  std::vector<FirstVisit> visits;
-  std::unordered_map<NodeId, int> place_of;
-  now.for_first_visits(
-      search(),
-      [&](NodeId node, double cost) {
-        place_of.emplace(node, static_cast<int>(visits.size()));
-        visits.push_back({node, cost});
-        return true;
-      },
-      always);
-  const Graph& both_ways = now.view().both_ways();
   NodeId best = kNoNode;
   double least = kNoLimit;
-  std::vector<bool> met(visits.size());
-  for (int first = 0; first < std::ssize(visits); ++first) {
-    if (met[first]) continue;
-    met[first] = true;
-    std::vector<int> part = {first};
-    const auto meet = [&](NodeId node) {
-      const auto place = place_of.find(node);
-      if (place == place_of.end() || met[place->second]) return;
-      met[place->second] = true;
-      part.push_back(place->second);
-    };
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      for (const NodeId next : both_ways.neighbours(visits[part[i]].node)) {
-        meet(next);
-        if (!now.ground().contains(next)) continue;
-        for (const NodeId beside : both_ways.neighbours(next)) meet(beside);
-      }
-    }
-    // The first of a part is its nearest.
-    const double potential = kDistanceWeight * visits[first].cost -
-                             kSizeWeight * now.view().open().mean_cost() * static_cast<double>(part.size());
+  for (const FrontierPart& part : frontier_parts(now, search(), std::numeric_limits<int>::max())) {
+    const double potential =
+        kDistanceWeight * part.nearest.cost - kSizeWeight * now.view().open().mean_cost() * part.size;
     if (potential < least) {
       least = potential;
-      best = visits[first].node;
+      best = part.nearest.node;
     }
   }
   return best;

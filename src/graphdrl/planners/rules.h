@@ -10,13 +10,16 @@
 namespace graphdrl {
 
 // Goes to one first visit after the other, each by the cheapest way through ground; then to where the walk must end.
-// Chooses anew once more is known. On an unknown map first visits lead to what was seen and not visited, or on known
-// ways to the frontier where what is seen counts.
+// Chooses anew once more is known, or some visits later. On an unknown map first visits lead to what was seen and not
+// visited, or on known ways to the frontier where what is seen counts.
 class FirstVisitPolicy : public Policy {
  public:
   void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) final;
 
  protected:
+  // held_for: visits for which a choice is held although more becomes known.
+  explicit FirstVisitPolicy(std::uint64_t held_for = 0) : held_for_(held_for) {}
+
   // The first visit to make; kNoNode for none. The way there must be the one that search() met last.
   virtual NodeId choose(const Exploration& now, const Observation& observation) = 0;
   NearestFirst& search() { return search_; }
@@ -27,11 +30,13 @@ class FirstVisitPolicy : public Policy {
     View view;                     // of the walk: walks of unknown maps may have the same numbers
     std::uint64_t version;         // of what was known then
     std::uint64_t hash;            // of the walk so far
-    std::vector<NodeId> way = {};  // what is left of it, the next step last
+    std::vector<NodeId> way = {};  // what is left of it, the next step last, the goal first
   };
 
   int act_on(const Observation& now);
+  bool goes_on(const Trip& trip, const Observation& now) const;
 
+  std::uint64_t held_for_;
   NearestFirst search_;
   std::vector<Trip> trips_;  // the last ones, kMostTrips at most
   std::size_t oldest_ = 0;
@@ -43,15 +48,17 @@ enum class Rule {
   kPocket,      // nearest; of equally near ones the one with most neighbours visited, then the one seen last
   kOpen,        // nearest; of equally near ones the one with fewest, then the one seen last
   kFrontier,    // three times the distance less the size of the frontier around it, least first [explore_lite]
+  kTour,        // the first stop of a short tour of the frontier's parts; held for a while
 };
 
 // On a known map nothing was seen last. Ties go to the first one that the search meets; where the order of neighbours
 // means nothing [View::ordered()], to any of them, by the walk's hash.
 //
-// A choice costs what is nearer than its choice; of kFrontier the whole frontier.
+// A choice costs what is nearer than its choice; of kFrontier and kTour the whole frontier.
 class RulePolicy final : public FirstVisitPolicy {
  public:
-  explicit RulePolicy(Rule rule) : rule_(rule) {}
+  // smallest_part: of kTour, see begin_of_frontier_tour().
+  explicit RulePolicy(Rule rule, int smallest_part = 1);
 
  private:
   NodeId choose(const Exploration& now, const Observation& observation) override;
@@ -60,6 +67,7 @@ class RulePolicy final : public FirstVisitPolicy {
   NodeId choose_by_frontier(const Exploration& now);
 
   Rule rule_;
+  int smallest_part_;
 };
 
 }  // namespace graphdrl

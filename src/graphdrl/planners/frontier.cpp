@@ -1,0 +1,156 @@
+#include "graphdrl/planners/frontier.h"
+
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+namespace graphdrl {
+namespace {
+
+// Of a tour (docs/unknown.md).
+constexpr int kMostSteps = 24;          // within a part
+constexpr std::size_t kMostParts = 40;  // the nearest ones
+constexpr double kStraightShare = 0.5;  // of the cost of a way; the rest is that of the ways known
+constexpr int kMostPasses = 50;         // of improvements
+
+using StopCosts = std::vector<std::vector<double>>;
+
+// A way from the position, and what it costs up to each node of it.
+struct Way {
+  std::vector<NodeId> nodes;
+  std::vector<double> costs;
+};
+
+Way way_to(const Exploration& now, NodeId node, const NearestFirst& search) {
+  Way way{.nodes = {now.position()}, .costs = {0}};
+  search.append_path_to(node, way.nodes);
+  const Graph& open = now.view().open();
+  for (std::size_t i = 1; i < way.nodes.size(); ++i) {
+    const NodeId from = way.nodes[i - 1];
+    way.costs.push_back(way.costs.back() + open.cost(from, open.index_of(from, way.nodes[i])));
+  }
+  return way;
+}
+
+double cost_between(const View& view, const Way& one, const Way& other) {
+  const auto [fork, _] = std::ranges::mismatch(one.nodes, other.nodes);
+  const double shared = one.costs[static_cast<std::size_t>(fork - one.nodes.begin()) - 1];
+  const double known = one.costs.back() + other.costs.back() - 2 * shared;
+  if (!view.has_places()) return known;
+  const double straight = view.straight_cost(one.nodes.back(), other.nodes.back());
+  return kStraightShare * straight + (1 - kStraightShare) * known;
+}
+
+// costs: [P + 1, P + 1], of the position and the stops; with a row more where the tour must end at a place.
+double cost_of(const std::vector<int>& tour, const StopCosts& costs) {
+  double cost = 0;
+  int at = 0;
+  for (const int stop : tour) cost += costs[std::exchange(at, stop)][stop];
+  return tour.size() + 1 < costs.size() ? cost + costs[at].back() : cost;
+}
+
+// Nearest neighbour, then 2-opt and single stops moved, while they help.
+std::vector<int> short_tour(int stops, const StopCosts& costs) {
+  std::vector<int> tour(stops);
+  std::iota(tour.begin(), tour.end(), 1);
+  for (int i = 0, at = 0; i < stops; at = tour[i++]) {
+    std::iter_swap(tour.begin() + i, std::min_element(tour.begin() + i, tour.end(),
+                                                      [&](int a, int b) { return costs[at][a] < costs[at][b]; }));
+  }
+  double least = cost_of(tour, costs);
+  bool better = true;
+  std::vector<int> tried;
+  const auto try_it = [&] {
+    const double cost = cost_of(tried, costs);
+    if (cost > least - 1e-9) return;
+    least = cost;
+    tour = tried;
+    better = true;
+  };
+  for (int pass = 0; better && pass < kMostPasses; ++pass) {
+    better = false;
+    for (int i = 0; i < stops; ++i) {
+      for (int j = 0; j < stops; ++j) {
+        tried = tour;
+        if (i < j) {
+          std::reverse(tried.begin() + i, tried.begin() + j + 1);
+          try_it();
+          tried = tour;
+        }
+        tried.erase(tried.begin() + i);
+        tried.insert(tried.begin() + j, tour[i]);
+        try_it();
+      }
+    }
+  }
+  return tour;
+}
+
+}  // namespace
+
+std::vector<FrontierPart> frontier_parts(const Exploration& now, NearestFirst& search, int most_steps) {
+  std::vector<FirstVisit> visits;
+  std::unordered_map<NodeId, int> place_of;
+  now.for_first_visits(
+      search,
+      [&](NodeId node, double cost) {
+        place_of.emplace(node, static_cast<int>(visits.size()));
+        visits.push_back({node, cost});
+        return true;
+      },
+      [](double /*cost*/) { return true; });
+  const Graph& both_ways = now.view().both_ways();
+  std::vector<FrontierPart> parts;
+  std::vector<bool> met(visits.size());
+  std::vector<std::pair<int, int>> part;  // places, and steps from the first
+  for (int first = 0; first < std::ssize(visits); ++first) {
+    if (met[first]) continue;
+    met[first] = true;
+    part.assign(1, {first, 0});
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const auto [place, steps] = part[i];
+      if (steps >= most_steps) continue;
+      const auto meet = [&](NodeId node) {
+        const auto other = place_of.find(node);
+        if (other == place_of.end() || met[other->second]) return;
+        met[other->second] = true;
+        part.emplace_back(other->second, steps + 1);
+      };
+      for (const NodeId next : both_ways.neighbours(visits[place].node)) {
+        meet(next);
+        if (!now.ground().contains(next)) continue;
+        for (const NodeId beside : both_ways.neighbours(next)) meet(beside);
+      }
+    }
+    parts.push_back({.nearest = visits[first], .size = static_cast<int>(part.size())});
+  }
+  return parts;
+}
+
+NodeId begin_of_frontier_tour(const Exploration& now, NearestFirst& search, int smallest_part) {
+  std::vector<FrontierPart> parts = frontier_parts(now, search, kMostSteps);
+  const auto few = [&](const FrontierPart& part) { return part.size < smallest_part; };
+  if (!std::ranges::all_of(parts, few)) std::erase_if(parts, few);
+  if (parts.empty()) return kNoNode;
+  parts.resize(std::min(parts.size(), kMostParts));
+
+  std::vector<Way> ways = {way_to(now, now.position(), search)};
+  for (const FrontierPart& part : parts) ways.push_back(way_to(now, part.nearest.node, search));
+  const NodeId end = now.task().end();
+  if (end != kNoNode && end != now.position()) {
+    NearestFirst home;
+    if (find_way(now.view().open(), now.position(), end, now.ground(), home)) ways.push_back(way_to(now, end, home));
+  } else if (end != kNoNode) {
+    ways.push_back(ways.front());
+  }
+  StopCosts costs(ways.size(), std::vector<double>(ways.size()));
+  for (std::size_t a = 0; a < ways.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      costs[a][b] = costs[b][a] = b == 0 ? ways[a].costs.back() : cost_between(now.view(), ways[a], ways[b]);
+    }
+  }
+  return parts[short_tour(static_cast<int>(parts.size()), costs).front() - 1].nearest.node;
+}
+
+}  // namespace graphdrl
