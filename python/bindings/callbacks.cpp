@@ -231,6 +231,17 @@ void bind_callbacks(nb::module_& module) {
           },
           nb::rv_policy::automatic, "What the first visit of each node is worth. Shape [N], float64.")
       .def_prop_ro(
+          "places",
+          [](const State& state) {
+            std::vector<double> places;
+            for (const Point& place : state.get().view().places()) places.insert(places.end(), {place.x, place.y});
+            return to_numpy(std::move(places), 2);
+          },
+          nb::rv_policy::automatic,
+          "Where each node seen lies, x and y, y upward. Shape [N, 2], float64; [0, 2] where the world has no places, "
+          "and "
+          "of a known map, whose World says it.")
+      .def_prop_ro(
           "frontier",
           [](const State& state) {
             const View& view = state.get().view();

@@ -267,8 +267,8 @@ def explore(
 
     The walk is that of `graphdrl explore` with the same options. A policy of your own gets a State of what is known:
     nodes have numbers 0, 1, 2 … in the order in which they were seen, the start first, and arrays of N values have one
-    for each node seen. `state.edges`, `edge_costs`, `frontier`, `seen_at` and `prizes` say the rest of what is known.
-    Numbers of nodes say nothing of the world's own.
+    for each node seen. `state.edges`, `edge_costs`, `frontier`, `seen_at`, `prizes` and `places` say the rest of what
+    is known. Numbers of nodes say nothing of the world's own.
 
     Args:
         world: where to walk.

@@ -119,6 +119,7 @@ class Nearest:
         self.states += 1
         assert state.walk[0] == 0 and state.walk[-1] == state.position
         assert len(state.visits) == len(state.prizes) == len(state.seen_at)
+        assert state.places.shape == (len(state.visits) if self.world.places is not None else 0, 2)
         assert not set(state.frontier) & set(np.flatnonzero(state.visits))
         graph = nx.DiGraph() if self.world.directed else nx.Graph()
         graph.add_nodes_from(range(len(state.visits)))

@@ -54,7 +54,8 @@ def random_states(count, families):
 
 def test_training_gives_the_programs_bytes(paper, tmp_path):
     run, rows = paper
-    done = run_program("train", "--preset", "paper", "--episodes", 12, "--batch-size", 4, "--seed", 3, "--out", tmp_path / "run")
+    short = ["--episodes", 12, "--batch-size", 4, "--seed", 3]
+    done = run_program("train", "--preset", "paper", *short, "--out", tmp_path / "run")
     assert done.returncode == 0, done.stderr
     for name in ("policy.safetensors", "config.json", "metrics.jsonl"):
         assert (run.path / name).read_bytes() == (tmp_path / "run" / name).read_bytes(), name
