@@ -363,7 +363,7 @@ def main():
     which.add_argument("--starts", type=int, default=100)
     which = command(noge, rules, "grids, ladders, mazes, Barabasi-Albert graphs, cavemen and trees")
     which.add_argument("--count", type=int, default=50, help="graphs of each set")
-    which = command(dungeons, ["nearest", "frontier"], "pictures of dungeons, seen by lines of sight")
+    which = command(dungeons, ["nearest", "frontier", "tour:16"], "pictures of dungeons, seen by lines of sight")
     which.add_argument("folder", type=pathlib.Path, help="of PNG files, KIND-NAME.png")
     which.add_argument("--count", type=int, help="the first so many of each kind; the default is all")
     which = command(families, rules, "graphs that a program prints")

@@ -159,7 +159,7 @@ class Task {
     return *this;
   }
   // Explores a map that is not known beforehand: a visit shows "edges", or all within "radius:R", or what "sight:R"
-  // meets. The policy is then explorer, unless it is set.
+  // meets. The policy is then that of `graphdrl explore`, unless it is set.
   Task& reveal(std::string what) {
     reveal_ = std::move(what);
     return *this;

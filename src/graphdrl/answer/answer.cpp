@@ -24,9 +24,15 @@ constexpr double kPlanShare = 0.97;
 constexpr double kCutWork = 1e7;
 constexpr double kBranchWork = 2e6;
 
-PolicySpec spec_of(const PlanRequest& request) {
-  const std::string usual = request.reveal.all() ? kPlanPolicy : request.believed ? kBelievingPolicy : kOnlinePolicy;
-  PolicySpec spec = parse_policy(request.policy.empty() ? usual : request.policy);
+const char* usual_policy(const PlanRequest& request, const World& world) {
+  if (request.reveal.all()) return kPlanPolicy;
+  if (request.believed) return kBelievingPolicy;
+  const bool sees_far = request.reveal.kind() != Reveal::Kind::kEdges;
+  return request.score == Score::kSeen && sees_far && world.has_cells() ? kSeeingPolicy : kOnlinePolicy;
+}
+
+PolicySpec spec_of(const PlanRequest& request, const World& world) {
+  PolicySpec spec = parse_policy(request.policy.empty() ? usual_policy(request, world) : request.policy);
   if (!request.iterations) return spec;
   if (spec.kind != PolicyKind::kSearch) {
     throw Error({.what = "--iterations goes with the policy search", .got = in_quotes(request.policy, 200)});
@@ -58,7 +64,7 @@ struct Chosen {
 };
 
 // label: what the policy is called; changed where it has a name here.
-Chosen choose(const PlanRequest& request, std::string& label) {
+Chosen choose(const PlanRequest& request, const World& world, std::string& label) {
   Chosen made;
   if (request.believed != nullptr) {
     if (request.reveal.all() || request.own_policy) {
@@ -67,7 +73,7 @@ Chosen choose(const PlanRequest& request, std::string& label) {
     if (request.own_planner) {
       made.policy = make_believing_policy(request.own_planner(), request.believed);
     } else {
-      const PolicySpec spec = spec_of(request);
+      const PolicySpec spec = spec_of(request, world);
       label = spec.label;
       made.policy = make_believing_policy(spec, request.seed, request.believed);
     }
@@ -78,7 +84,7 @@ Chosen choose(const PlanRequest& request, std::string& label) {
   } else if (request.own_policy) {
     made.policy = request.own_policy();
   } else {
-    const PolicySpec spec = spec_of(request);
+    const PolicySpec spec = spec_of(request, world);
     label = spec.label;
     if (request.reveal.all()) made.planner = make_planner(spec, request.seed);
     if (made.planner == nullptr) {
@@ -104,7 +110,7 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
                 .reveal = request.reveal,
                 .score = request.score,
                 .until_covered = request.until_covered};
-  const auto [planner, policy] = choose(request, answer.policy);
+  const auto [planner, policy] = choose(request, world, answer.policy);
   const bool bounds = planner != nullptr && planner->bounds();
   const double bound = bounds || request.score == Score::kSeen ? kNoLimit : max_prize(task, bound_clock);
   if (planner != nullptr) {

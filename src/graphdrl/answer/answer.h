@@ -36,9 +36,11 @@ struct Answer {
   int max_visited() const { return static_cast<int>(std::clamp<double>(plan.bound, 0, world.valid_count())); }
 };
 
-// Where nobody asks for another: where the map is known, where it is not, and where there is an old one besides.
+// Where nobody asks for another: where the map is known, where it is not, where cells are then seen from afar and
+// count, and where there is an old map besides.
 inline constexpr const char* kPlanPolicy = "search";
 inline constexpr const char* kOnlinePolicy = "explorer";
+inline constexpr const char* kSeeingPolicy = "tour";
 inline constexpr const char* kBelievingPolicy = "search:10000";  // plans often
 
 struct PlanRequest {
