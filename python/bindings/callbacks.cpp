@@ -238,9 +238,9 @@ void bind_callbacks(nb::module_& module) {
             return to_numpy(std::move(places), 2);
           },
           nb::rv_policy::automatic,
-          "Where each node seen lies, x and y, y upward. Shape [N, 2], float64; [0, 2] where the world has no places, "
-          "and "
-          "of a known map, whose World says it.")
+          "Where each node seen lies, x and y, y upward. Shape [N, 2], float64; [0, 2] where the world has no places. "
+          "Of "
+          "a known map, too: see World.places.")
       .def_prop_ro(
           "frontier",
           [](const State& state) {

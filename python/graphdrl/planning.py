@@ -276,8 +276,9 @@ def explore(
         start: as of `plan`.
         end: as of `plan`. A walk that must end at a node keeps the way back to its start, until it has seen that node
             and can pay for the way there.
-        policy: as of `plan`; by default `explorer`, the one for unknown maps; `tour` where cells seen count that are
-            within a radius or in sight; and with `believed` `search:10000`. Policies that plan, and an Explorer of known maps, do so on what is known, anew with each discovery.
+        policy: as of `plan`; by default `search:10000` with `believed`, `tour` with the score `seen` on cells within a
+            radius or in sight, else `explorer`, the one for unknown maps. Policies that plan, and an Explorer of known
+            maps, do so on what is known, anew with each discovery.
         reveal: what a visit shows. `edges`: those of the node, and where they lead; `radius:R`: all within the cost R;
             `sight:R`, on grids: what straight lines of the length R meet; `all`: the whole map.
         score: what counts, nodes `visited` or nodes `seen`.

@@ -93,7 +93,7 @@ TEST(CInterface, ExploresAPathWorkedOutByHand) {
   EXPECT_NE(std::string(graphdrl_result_json(result.handle)).find("\"policy\":\"explorer\""), std::string::npos);
 }
 
-// From 0, where 1 and 4 are seen, both as near. The old map has the ring but for the edge that came since.
+// The old map is a path from 0 to 5; since then an edge from 0 to 4 came. From 0 both 1 and 4 are seen.
 TEST(CInterface, ExploresByAnOldMap) {
   Owned<graphdrl_world> world;
   Owned<graphdrl_world> old;
@@ -107,9 +107,13 @@ TEST(CInterface, ExploresByAnOldMap) {
   task.believed = old.handle;
   Owned<graphdrl_result> result;
   ASSERT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_DONE) << graphdrl_last_error();
-  EXPECT_EQ(graphdrl_result_visited(result.handle), 6) << "round the ring to 5";
+  std::size_t length = 0;
+  const std::int32_t* const walk = graphdrl_result_walk(result.handle, &length);
+  EXPECT_EQ(std::vector<std::int32_t>(walk, walk + length), (std::vector<std::int32_t>{0, 1, 2, 3, 4, 5}));
+  EXPECT_NE(std::string(graphdrl_result_json(result.handle)).find("\"policy\":\"search:10000\""), std::string::npos);
+  graphdrl_result* none = nullptr;
   task.reveal = nullptr;
-  EXPECT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_BAD_INPUT);
+  EXPECT_EQ(graphdrl_plan(world.handle, &task, &none), GRAPHDRL_BAD_INPUT);
   EXPECT_EQ(std::string(graphdrl_last_error()),
             "an old map goes with a map that is not known, and with a policy that plans");
   task.reveal = "edges";
@@ -117,7 +121,7 @@ TEST(CInterface, ExploresByAnOldMap) {
   const std::vector<unsigned char> blocked(6);
   ASSERT_EQ(graphdrl_world_from_grid("cells", 2, 3, blocked.data(), 0, &cells.handle), GRAPHDRL_DONE);
   task.believed = cells.handle;
-  EXPECT_EQ(graphdrl_plan(world.handle, &task, &result.handle), GRAPHDRL_BAD_INPUT);
+  EXPECT_EQ(graphdrl_plan(world.handle, &task, &none), GRAPHDRL_BAD_INPUT);
   EXPECT_NE(std::string(graphdrl_last_error()).find("the believed map is of another kind"), std::string::npos);
 }
 

@@ -84,6 +84,15 @@ TEST(HiddenWorld, ShowsTheEdgesOfNodesVisited) {
   EXPECT_EQ(hidden.view().open().max_cost(), 5);
 }
 
+TEST(HiddenWorld, ShowsWhereNodesLie) {
+  const World map = grid_world("..\n..\n");
+  HiddenWorld cells(map, Reveal::parse("edges"), Score::kVisited, 0, 7);
+  ASSERT_EQ(cells.view().places().size(), 3u);
+  for (NodeId node = 0; node < 3; ++node) EXPECT_EQ(cells.view().places()[node], map.place(cells.in_world(node)));
+  HiddenWorld graph(hidden_graph(3, {{0, 1}, {1, 2}}), Reveal::parse("edges"), Score::kVisited, 1, 7);
+  EXPECT_FALSE(graph.view().has_places());
+}
+
 TEST(HiddenWorld, ShowsWhatIsWithinARadius) {
   const World path = hidden_graph(6, {{0, 1, 2}, {1, 2, 2}, {2, 3, 2}, {3, 4, 2}, {4, 5, 2}});
   HiddenWorld hidden(path, Reveal::parse("radius:4"), Score::kSeen, 2, 7);

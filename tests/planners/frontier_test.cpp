@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <optional>
+
 #include "graphdrl/env/discovery.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/rules.h"
@@ -10,7 +12,7 @@
 namespace graphdrl {
 namespace {
 
-using ::testing::UnorderedElementsAre;
+using ::testing::ElementsAre;
 
 // What is known of a map: edges among `ground` nodes, which come first, and to the frontier.
 class KnownPart {
@@ -28,12 +30,16 @@ class KnownPart {
   }
 
   // From node 0.
-  std::vector<FrontierPart> parts(int most_steps) { return frontier_parts(exploration(), search_, most_steps); }
-  NodeId begin(int smallest_part = 1) { return begin_of_frontier_tour(exploration(), search_, smallest_part); }
+  std::vector<FrontierPart> parts(int most_steps) {
+    return frontier_parts(exploration(End::anywhere()), search_, most_steps);
+  }
+  NodeId first_stop(int smallest_part = 1, const End& end = End::anywhere()) {
+    return first_stop_of_frontier_tour(exploration(end), search_, smallest_part);
+  }
 
  private:
-  Exploration exploration() {
-    task_.emplace(known_.view(), 0, kNoLimit, End::anywhere());
+  Exploration exploration(const End& end) {
+    task_.emplace(known_.view(), 0, kNoLimit, end);
     return {*task_, ground_, count_, 0, task_->limit()};
   }
 
@@ -44,58 +50,68 @@ class KnownPart {
   NearestFirst search_;
 };
 
-//   3 - 4   6    0, 1 and 2 are ground
-//   |   |   |
-//   1 - 5   |
-//    \     /
-//     0 - 2 - 7
-TEST(FrontierParts, AreFirstVisitsNextToEachOtherOrToTheSameGround) {
-  KnownPart map(8, 3, {{0, 1}, {0, 2}, {1, 3}, {1, 5}, {3, 4}, {4, 5}, {2, 6}, {2, 7}});
-  const auto sizes = [](const std::vector<FrontierPart>& parts) {
-    std::vector<int> all;
-    for (const FrontierPart& part : parts) all.push_back(part.size);
-    return all;
-  };
-  // 4 is a first visit once 3 or 5 is ground.
-  EXPECT_THAT(sizes(map.parts(9)), UnorderedElementsAre(2, 2));
-  EXPECT_THAT(sizes(map.parts(0)), UnorderedElementsAre(1, 1, 1, 1));
-  EXPECT_EQ(map.parts(9).front().nearest.cost, 2);
+std::vector<int> sizes_of(const std::vector<FrontierPart>& parts) {
+  std::vector<int> sizes;
+  for (const FrontierPart& part : parts) sizes.push_back(part.size);
+  return sizes;
 }
 
-// From 0 two steps to the frontier at 11, three to 12 on the other side, and eight to 13 beyond the first:
-//   13 - 7 - 6 - 5 - 4 - 3 - 2 - 1 - 0 - 8 - 9 - 12, and 11 beside 1
+// Ground is 0, 1 and 2. Beside 1 are 3 and 4, beside 2 are 5 and 6.
+TEST(FrontierParts, AreFirstVisitsNextToEachOtherOrToTheSameGround) {
+  const std::vector<Edge> edges = {{0, 1}, {0, 2}, {1, 3}, {1, 4}, {2, 5}, {2, 6}};
+  KnownPart apart(7, 3, edges);
+  EXPECT_THAT(sizes_of(apart.parts(9)), ElementsAre(2, 2));
+  EXPECT_THAT(sizes_of(apart.parts(0)), ElementsAre(1, 1, 1, 1));
+  EXPECT_EQ(apart.parts(9).front().nearest.cost, 2);
+  std::vector<Edge> joined = edges;
+  joined.push_back({4, 5});
+  KnownPart together(7, 3, joined);
+  EXPECT_THAT(sizes_of(together.parts(3)), ElementsAre(4)) << "3, 4, 5, 6";
+  EXPECT_THAT(sizes_of(together.parts(2)), ElementsAre(3, 1));
+}
+
+// Ways from 0: two steps to the frontier at 10, seven to 12 beyond it, and three to 11 on the other side.
+//   12 - 7 - 6 - 5 - 4 - 3 - 2 - 1 - 0 - 8 - 9 - 11, and 10 beside 1
 std::vector<Edge> line_with_a_branch() {
-  std::vector<Edge> edges = {{0, 8}, {8, 9}, {9, 12}, {1, 11}, {7, 13}};
+  std::vector<Edge> edges = {{0, 8}, {8, 9}, {9, 11}, {1, 10}, {7, 12}};
   for (NodeId node = 0; node < 7; ++node) edges.push_back({node, node + 1});
   return edges;
 }
 
 TEST(FrontierTour, BeginsWhereAShortTourDoesAndNotWhereItIsNearest) {
-  KnownPart map(14, 10, line_with_a_branch());
-  EXPECT_EQ(map.parts(9).front().nearest.node, 11);
-  // 12, 11, 13 costs 3 + 5 + 8; from 11 on the best costs 2 + 5 + 11.
-  EXPECT_EQ(map.begin(), 12);
+  KnownPart map(13, 10, line_with_a_branch());
+  EXPECT_EQ(map.parts(9).front().nearest.node, 10);
+  // 11, 10, 12 costs 3 + 5 + 8; from 10 on the best costs 2 + 5 + 11.
+  EXPECT_EQ(map.first_stop(), 11);
 }
 
-// Were there a straight way from 12 to 13, 11 would come first: 2 + 5 + 6 and not 3 + 6 + 8.
+TEST(FrontierTour, EndsWhereTheWalkMust) {
+  KnownPart map(13, 10, line_with_a_branch());
+  // To the end at 9: with 11 last, both other orders cost 22; 11, 10, 12 costs 3 + 5 + 8 + 10.
+  EXPECT_NE(map.first_stop(1, End::at(9)), 11);
+}
+
+// Places halve the ways between parts: an edge costs half of what lies between its ends, so that 11 and 12, beside each
+// other, may be near. 10, 11, 12 then costs less than 11, 10, 12.
 TEST(FrontierTour, TakesStraightWaysForPossible) {
-  std::vector<Point> places(14);
-  places[11] = {-2, 0};
-  places[12] = {3, 0};
-  places[13] = {3, 1};
-  for (NodeId node = 1; node <= 7; ++node) places[node] = {-node / 1.0, 0};
-  EXPECT_EQ(KnownPart(14, 10, line_with_a_branch(), places).begin(), 11);
+  std::vector<Point> places(13, {0, 0});
+  for (NodeId node = 1; node <= 7; ++node) places[node] = {-2.0 * node, 0};
+  places[8] = {2, 0};
+  places[9] = {4, 0};
+  places[10] = {-2, 2};
+  places[11] = places[12] = {6, 0};
+  EXPECT_EQ(KnownPart(13, 10, line_with_a_branch(), places).first_stop(), 10);
 }
 
-// A dead end of one first visit is next to the position, four first visits are two steps away.
+// A dead end of one first visit is next to the position, four first visits are three steps away.
 TEST(FrontierTour, LeavesSmallPartsForLater) {
   std::vector<Edge> edges = {{0, 1}, {0, 3}, {1, 2}};
   for (NodeId node = 4; node < 8; ++node) edges.push_back({2, node});
   KnownPart map(8, 3, edges);
-  EXPECT_EQ(map.begin(), 3);
-  EXPECT_EQ(map.begin(4), 4);
-  EXPECT_EQ(map.begin(5), 3) << "there is no larger one";
-  EXPECT_EQ(KnownPart(3, 3, {{0, 1}, {1, 2}}).begin(), kNoNode);
+  EXPECT_EQ(map.first_stop(), 3);
+  EXPECT_EQ(map.first_stop(4), 4);
+  EXPECT_EQ(map.first_stop(5), 3) << "there is no larger one";
+  EXPECT_EQ(KnownPart(3, 3, {{0, 1}, {1, 2}}).first_stop(), kNoNode);
 }
 
 // Rooms of which a robot sees what is in sight: it sees them all, and comes home.

@@ -53,10 +53,14 @@ def test_the_further_it_sees_the_fewer_steps_it_takes_to_see_all(run, grid):
     assert everything["cost"] == 0 and everything["seen"] == 40
 
 
-def test_the_default_is_a_tour_where_what_is_seen_from_afar_counts(run, grid):
+def test_the_default_is_a_tour_where_what_is_seen_from_afar_counts(run, grid, tmp_path):
     assert explored(run, grid, "--budget", "5", "--reveal", "sight:3", "--score", "seen")["policy"] == "tour"
+    assert explored(run, grid, "--budget", "5", "--reveal", "radius:3", "--score", "seen")["policy"] == "tour"
     assert explored(run, grid, "--budget", "5", "--reveal", "sight:3")["policy"] == "explorer"
     assert explored(run, grid, "--budget", "5", "--score", "seen")["policy"] == "explorer"
+    graph = tmp_path / "graph.txt"
+    graph.write_text("a b\nb c\nc d\n")
+    assert explored(run, graph, "--budget", "5", "--reveal", "radius:1", "--score", "seen")["policy"] == "explorer"
 
 
 def test_planners_plan_on_what_is_known(run, grid):

@@ -173,9 +173,9 @@ void add_explore_command(CLI::App& app) {
   add_shared_options(command, *options);
   add_text_option(
       command, "--policy", options->request.policy, "P",
-      fmt::format("{}. The default is {}; where cells seen count that are within a radius or in sight {}; with "
-                  "--believed {}",
-                  policy_names(), kOnlinePolicy, kSeeingPolicy, kBelievingPolicy));
+      fmt::format("{}. The default is {} with --believed, {} with --score seen on cells within a radius or in sight, "
+                  "else {}",
+                  policy_names(), kBelievingPolicy, kSeeingPolicy, kOnlinePolicy));
   add_text_option(
       command, "--reveal", options->reveal, "R",
       "What a visit shows: edges, those of the node; radius:R, all within that cost; sight:R on grids, what "

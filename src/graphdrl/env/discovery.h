@@ -68,13 +68,12 @@ class Discovery {
 
   const View& view() const { return view_; }
 
-  // Of all nodes or of none: a node of an old map, and a place.
   struct Seen {
     double prize = 1;                        // of its first visit
     std::optional<NodeId> believed_as = {};  // its node in an old map, kNoNode where that has none
     std::optional<Point> place = {};
   };
-  // A new node is seen, on the frontier.
+  // A new node is seen, on the frontier. REQUIRES: all nodes have a place, or none has; likewise a node of an old map.
   NodeId see(const Seen& seen);
   NodeId see() { return see(Seen()); }
   // Makes an edge between nodes seen known; does nothing where it is. Frontier nodes at its ends are seen again.
@@ -101,8 +100,8 @@ class Discovery {
 // A world of which a walk sees no more than its visits show. Nodes have two numbers: the world's, and the one by which
 // the walk knows them.
 //
-// Nothing else of the world gets through: where nodes have no cells, those that a visit shows for the first time are
-// numbered in random order.
+// A node seen shows its prize and, where the world has places, its place. Nothing else of the world gets through: where
+// nodes have no cells, those that a visit shows for the first time are numbered in random order.
 class HiddenWorld {
  public:
   // Begins at a node of the world, which it visits. Throws Error on a reveal that the world does not have: sight

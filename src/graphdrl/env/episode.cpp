@@ -121,23 +121,23 @@ StepResult Episode::enter(NodeId next, double cost) {
   const double spent_before = spent_;
   spent_ += cost;
   free_moves_ = first_visit || spent_ > spent_before ? 0 : free_moves_ + 1;
-  const double gained = first_visit ? visit(next) : 0;
+  const double gained = first_visit ? visit_first() : 0;
   return {.reward = reward_of(blocked, visits_before, gained), .blocked = blocked, .first_visit = first_visit};
 }
 
-// The first visit of the node where the walk now is. Returns what it gains of what is counted.
-double Episode::visit(NodeId node) {
+// The first visit of the position. Returns what it gains of what is counted.
+double Episode::visit_first() {
   ++visited_count_;
-  prize_ += view().prize(node);
+  prize_ += view().prize(position_);
   if (!hidden()) {
-    visited_.insert(node);
-    return view().prize(node);
+    visited_.insert(position_);
+    return view().prize(position_);
   }
   const double seen_before = view().total_prize();
-  hidden_->visit(node);
+  hidden_->visit(position_);
   visits_.resize(view().node_count());
   settle_end();
-  return counts_seen() ? view().total_prize() - seen_before : view().prize(node);
+  return counts_seen() ? view().total_prize() - seen_before : view().prize(position_);
 }
 
 double Episode::reward_of(bool blocked, std::uint32_t visits_before, double gained) const {

@@ -112,7 +112,7 @@ class Episode {
   void begin_hidden(std::uint64_t number);
   void settle_end();
   StepResult enter(NodeId next, double cost);
-  double visit(NodeId node);
+  double visit_first();
   double reward_of(bool blocked, std::uint32_t visits_before, double gained) const;
 
   // Every step reads or writes these. They come first, side by side: of a thousand episodes little else is in the

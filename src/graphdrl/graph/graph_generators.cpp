@@ -154,7 +154,7 @@ Graph geometric_graph(int nodes, double mean_degree, bool lengths_cost, Rng& rng
     }
     std::sort(near.begin(), near.end());  // frozen splits hold sums of lengths in this order
     for (const int b : near) {
-      const double length = std::hypot(places[a].x - places[b].x, places[a].y - places[b].y);
+      const double length = length_between(places[a], places[b]);
       if (length >= radius || length == 0) continue;
       edges.push_back({a, b, length});
       sum += length;

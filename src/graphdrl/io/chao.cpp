@@ -17,9 +17,7 @@ constexpr double kMostInTeamFile = 1e15;
 class Distances final : public PairCosts {
  public:
   explicit Distances(std::vector<Point> points) : points_(std::move(points)) {}
-  double cost(NodeId from, NodeId to) const override {
-    return std::hypot(points_[from].x - points_[to].x, points_[from].y - points_[to].y);
-  }
+  double cost(NodeId from, NodeId to) const override { return length_between(points_[from], points_[to]); }
   bool metric() const override { return true; }
 
  private:

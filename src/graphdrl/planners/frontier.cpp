@@ -9,12 +9,11 @@ namespace graphdrl {
 namespace {
 
 // Of a tour (docs/unknown.md).
-constexpr int kMostSteps = 24;          // within a part
+constexpr int kMostStepsInPart = 24;    // within a part
 constexpr std::size_t kMostParts = 40;  // the nearest ones
 constexpr double kStraightShare = 0.5;  // of the cost of a way; the rest is that of the ways known
+constexpr double kLess = 1 - 1e-9;      // not by rounding alone
 constexpr int kMostPasses = 50;         // of improvements
-
-using StopCosts = std::vector<std::vector<double>>;
 
 // A way from the position, and what it costs up to each node of it.
 struct Way {
@@ -42,28 +41,36 @@ double cost_between(const View& view, const Way& one, const Way& other) {
   return kStraightShare * straight + (1 - kStraightShare) * known;
 }
 
-// costs: [P + 1, P + 1], of the position and the stops; with a row more where the tour must end at a place.
-double cost_of(const std::vector<int>& tour, const StopCosts& costs) {
+// Stop 0 is the position.
+struct TourCosts {
+  std::vector<std::vector<double>> between;  // [stops, stops]
+  std::vector<double> to_end;                // [stops], 0 where the walk may end anywhere
+};
+
+double cost_of(const std::vector<int>& tour, const TourCosts& costs) {
   double cost = 0;
   int at = 0;
-  for (const int stop : tour) cost += costs[std::exchange(at, stop)][stop];
-  return tour.size() + 1 < costs.size() ? cost + costs[at].back() : cost;
+  for (const int stop : tour) cost += costs.between[std::exchange(at, stop)][stop];
+  return cost + costs.to_end[at];
 }
 
 // Nearest neighbour, then 2-opt and single stops moved, while they help.
-std::vector<int> short_tour(int stops, const StopCosts& costs) {
+// Gives all stops but the position.
+std::vector<int> short_tour(const TourCosts& costs) {
+  const int stops = static_cast<int>(costs.to_end.size()) - 1;
   std::vector<int> tour(stops);
   std::iota(tour.begin(), tour.end(), 1);
   for (int i = 0, at = 0; i < stops; at = tour[i++]) {
-    std::iter_swap(tour.begin() + i, std::min_element(tour.begin() + i, tour.end(),
-                                                      [&](int a, int b) { return costs[at][a] < costs[at][b]; }));
+    std::iter_swap(tour.begin() + i, std::min_element(tour.begin() + i, tour.end(), [&](int a, int b) {
+                     return costs.between[at][a] < costs.between[at][b];
+                   }));
   }
   double least = cost_of(tour, costs);
   bool better = true;
   std::vector<int> tried;
   const auto try_it = [&] {
     const double cost = cost_of(tried, costs);
-    if (cost > least - 1e-9) return;
+    if (cost >= least * kLess) return;
     least = cost;
     tour = tried;
     better = true;
@@ -91,11 +98,11 @@ std::vector<int> short_tour(int stops, const StopCosts& costs) {
 
 std::vector<FrontierPart> frontier_parts(const Exploration& now, NearestFirst& search, int most_steps) {
   std::vector<FirstVisit> visits;
-  std::unordered_map<NodeId, int> place_of;
+  std::unordered_map<NodeId, int> index_of;
   now.for_first_visits(
       search,
       [&](NodeId node, double cost) {
-        place_of.emplace(node, static_cast<int>(visits.size()));
+        index_of.emplace(node, static_cast<int>(visits.size()));
         visits.push_back({node, cost});
         return true;
       },
@@ -103,23 +110,26 @@ std::vector<FrontierPart> frontier_parts(const Exploration& now, NearestFirst& s
   const Graph& both_ways = now.view().both_ways();
   std::vector<FrontierPart> parts;
   std::vector<bool> met(visits.size());
-  std::vector<std::pair<int, int>> part;  // places, and steps from the first
+  std::vector<std::pair<int, int>> part;           // visits by index, and steps from the first
+  NodeSet looked_around(now.view().node_count());  // ground whose neighbours are met
   for (int first = 0; first < std::ssize(visits); ++first) {
     if (met[first]) continue;
     met[first] = true;
     part.assign(1, {first, 0});
     for (std::size_t i = 0; i < part.size(); ++i) {
-      const auto [place, steps] = part[i];
+      const int visit = part[i].first;
+      const int steps = part[i].second;
       if (steps >= most_steps) continue;
       const auto meet = [&](NodeId node) {
-        const auto other = place_of.find(node);
-        if (other == place_of.end() || met[other->second]) return;
+        const auto other = index_of.find(node);
+        if (other == index_of.end() || met[other->second]) return;
         met[other->second] = true;
         part.emplace_back(other->second, steps + 1);
       };
-      for (const NodeId next : both_ways.neighbours(visits[place].node)) {
+      for (const NodeId next : both_ways.neighbours(visits[visit].node)) {
         meet(next);
-        if (!now.ground().contains(next)) continue;
+        if (!now.ground().contains(next) || looked_around.contains(next)) continue;
+        looked_around.insert(next);
         for (const NodeId beside : both_ways.neighbours(next)) meet(beside);
       }
     }
@@ -128,29 +138,24 @@ std::vector<FrontierPart> frontier_parts(const Exploration& now, NearestFirst& s
   return parts;
 }
 
-NodeId begin_of_frontier_tour(const Exploration& now, NearestFirst& search, int smallest_part) {
-  std::vector<FrontierPart> parts = frontier_parts(now, search, kMostSteps);
-  const auto few = [&](const FrontierPart& part) { return part.size < smallest_part; };
-  if (!std::ranges::all_of(parts, few)) std::erase_if(parts, few);
+NodeId first_stop_of_frontier_tour(const Exploration& now, NearestFirst& search, int smallest_part) {
+  std::vector<FrontierPart> parts = frontier_parts(now, search, kMostStepsInPart);
+  const auto is_small = [&](const FrontierPart& part) { return part.size < smallest_part; };
+  if (!std::ranges::all_of(parts, is_small)) std::erase_if(parts, is_small);
   if (parts.empty()) return kNoNode;
   parts.resize(std::min(parts.size(), kMostParts));
 
   std::vector<Way> ways = {way_to(now, now.position(), search)};
   for (const FrontierPart& part : parts) ways.push_back(way_to(now, part.nearest.node, search));
-  const NodeId end = now.task().end();
-  if (end != kNoNode && end != now.position()) {
-    NearestFirst home;
-    if (find_way(now.view().open(), now.position(), end, now.ground(), home)) ways.push_back(way_to(now, end, home));
-  } else if (end != kNoNode) {
-    ways.push_back(ways.front());
-  }
-  StopCosts costs(ways.size(), std::vector<double>(ways.size()));
+  TourCosts costs{.between = {ways.size(), std::vector<double>(ways.size())}, .to_end = {}};
   for (std::size_t a = 0; a < ways.size(); ++a) {
+    costs.to_end.push_back(now.task().cost_to_end(ways[a].nodes.back()));
     for (std::size_t b = 0; b < a; ++b) {
-      costs[a][b] = costs[b][a] = b == 0 ? ways[a].costs.back() : cost_between(now.view(), ways[a], ways[b]);
+      costs.between[a][b] = costs.between[b][a] =
+          b == 0 ? ways[a].costs.back() : cost_between(now.view(), ways[a], ways[b]);
     }
   }
-  return parts[short_tour(static_cast<int>(parts.size()), costs).front() - 1].nearest.node;
+  return parts[short_tour(costs).front() - 1].nearest.node;
 }
 
 }  // namespace graphdrl

@@ -58,7 +58,7 @@ bool always(double /*cost*/) {
   return true;
 }
 
-constexpr std::uint64_t kTourHeldFor = 15;  // visits; docs/unknown.md
+constexpr std::uint64_t kTourHeldFor = 15;  // first visits; docs/unknown.md
 
 }  // namespace
 
@@ -103,7 +103,8 @@ int FirstVisitPolicy::act_on(const Observation& now) {
   return action;
 }
 
-// What was chosen is held for some visits, while it is new and the way there can be paid for.
+// What was chosen is held for some first visits although more becomes known, while it is no ground and the next step
+// can be paid for.
 bool FirstVisitPolicy::goes_on(const Trip& trip, const Observation& now) const {
   if (trip.way.empty()) return false;
   if (trip.version == now.view().version()) return true;
@@ -114,7 +115,7 @@ bool FirstVisitPolicy::goes_on(const Trip& trip, const Observation& now) const {
 NodeId RulePolicy::choose(const Exploration& now, const Observation& observation) {
   switch (rule_) {
     case Rule::kTour:
-      return begin_of_frontier_tour(now, search(), smallest_part_);
+      return first_stop_of_frontier_tour(now, search(), smallest_part_);
     case Rule::kDepthFirst:
       return choose_last_seen(now, observation.walk_hash);
     case Rule::kFrontier:

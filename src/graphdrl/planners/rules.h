@@ -10,14 +10,14 @@
 namespace graphdrl {
 
 // Goes to one first visit after the other, each by the cheapest way through ground; then to where the walk must end.
-// Chooses anew once more is known, or some visits later. On an unknown map first visits lead to what was seen and not
-// visited, or on known ways to the frontier where what is seen counts.
+// Chooses anew once more is known; some rules hold a choice for a while. On an unknown map first visits lead to what
+// was seen and not visited, or on known ways to the frontier where what is seen counts.
 class FirstVisitPolicy : public Policy {
  public:
   void act(std::span<const Observation> observations, std::span<int> actions, const Clock& clock = {}) final;
 
  protected:
-  // held_for: visits for which a choice is held although more becomes known.
+  // held_for: first visits for which a choice is held although more becomes known.
   explicit FirstVisitPolicy(std::uint64_t held_for = 0) : held_for_(held_for) {}
 
   // The first visit to make; kNoNode for none. The way there must be the one that search() met last.
@@ -54,10 +54,10 @@ enum class Rule {
 // On a known map nothing was seen last. Ties go to the first one that the search meets; where the order of neighbours
 // means nothing [View::ordered()], to any of them, by the walk's hash.
 //
-// A choice costs what is nearer than its choice; of kFrontier and kTour the whole frontier.
+// A choice costs what is nearer than its choice; of kFrontier and kTour all ground in reach.
 class RulePolicy final : public FirstVisitPolicy {
  public:
-  // smallest_part: of kTour, see begin_of_frontier_tour().
+  // smallest_part: of kTour, see first_stop_of_frontier_tour().
   explicit RulePolicy(Rule rule, int smallest_part = 1);
 
  private:
