@@ -240,7 +240,7 @@ void bind_callbacks(nb::module_& module) {
           nb::rv_policy::automatic,
           "Where each node seen lies, x and y, y upward. Shape [N, 2], float64; [0, 2] where the world has no places. "
           "Of "
-          "a known map, too: see World.places.")
+          "a known map, too; World.places has them.")
       .def_prop_ro(
           "frontier",
           [](const State& state) {
