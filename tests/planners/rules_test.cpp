@@ -24,6 +24,34 @@ std::vector<NodeId> explored(const World& world, Rule rule, double budget, std::
       .walk;
 }
 
+// Notes where it chooses the nearest first visit.
+class Noting final : public FirstVisitPolicy {
+ public:
+  explicit Noting(std::uint64_t held_for) : FirstVisitPolicy(held_for) {}
+  std::vector<NodeId> chose_at;
+
+ private:
+  NodeId choose(const Exploration& now, const Observation& observation) override {
+    chose_at.push_back(observation.position);
+    return now.nearest_first_visit(search()).node;
+  }
+};
+
+//   0 - 1 - 2 - 3 -- 4, of which a radius of 3 shows 0 to 3 at first, and 4 from 2.
+TEST(FirstVisitPolicy, HoldsItsChoiceThoughMoreBecomesKnown) {
+  const World world = graph_world(5, {{0, 1}, {1, 2}, {2, 3}, {3, 4, 2}});
+  const auto chose_at = [&](std::uint64_t held_for) {
+    Noting policy(held_for);
+    const EpisodeOptions options{
+        .action_space = ActionSpace::kNeighbours, .reveal = Reveal::parse("radius:3"), .score = Score::kSeen};
+    EXPECT_THAT(plan_by_steps(world, Task(world, 0, kNoLimit), options, policy).walk, ElementsAre(0, 1, 2));
+    return policy.chose_at;
+  };
+  EXPECT_THAT(chose_at(0), ElementsAre(0, 1, 2));
+  EXPECT_THAT(chose_at(1), ElementsAre(0, 1, 2));
+  EXPECT_THAT(chose_at(2), ElementsAre(0, 2)) << "at 2 nothing is left to see";
+}
+
 // Cells show directions, and the nearest node is the same whether more is known or not.
 TEST(RulePolicy, NearestWalksAnUnknownGridAsAKnownOne) {
   Rng rng(4);
