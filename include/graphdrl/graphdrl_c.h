@@ -89,14 +89,14 @@ typedef int32_t (*graphdrl_progress)(int32_t visited, double bound, void* data);
 /* What is asked. graphdrl_task_init() sets all of it; then set what differs. Later versions may add fields at its end.
  */
 typedef struct graphdrl_task {
-  size_t size;         /* of this struct, as the header of the caller has it */
-  double budget;       /* in units of cost; below 0: what the file says */
-  double relative;     /* above 0: instead, so many times the valid nodes, in edges of mean cost */
-  int32_t start;       /* a node or GRAPHDRL_GIVEN */
-  int32_t end;         /* a node, GRAPHDRL_GIVEN, GRAPHDRL_ANYWHERE or GRAPHDRL_AT_START */
-  const char* policy;  /* as of `graphdrl plan --policy`; NULL: search, or as `graphdrl explore` where reveal is set */
-  double time_limit_s; /* seconds for the plan and its bound; below 0: none */
-  uint64_t seed;       /* of the search; 1 at first */
+  size_t size;                /* of this struct, as the header of the caller has it */
+  double budget;              /* in units of cost; below 0: what the file says */
+  double relative;            /* above 0: instead, so many times the valid nodes, in edges of mean cost */
+  int32_t start;              /* a node or GRAPHDRL_GIVEN */
+  int32_t end;                /* a node, GRAPHDRL_GIVEN, GRAPHDRL_ANYWHERE or GRAPHDRL_AT_START */
+  const char* policy;         /* as of --policy; NULL: the default of `graphdrl plan`, or of `graphdrl explore` */
+  double time_limit_s;        /* seconds for the plan and its bound; below 0: none */
+  uint64_t seed;              /* of the search; 1 at first */
   graphdrl_progress progress; /* or NULL */
   void* progress_data;
   /* An exploration, as `graphdrl explore` with --reveal, --score and --think-time: */
@@ -104,7 +104,7 @@ typedef struct graphdrl_task {
   const char* score;   /* what counts, nodes "visited" or "seen"; NULL: visited */
   double think_time_s; /* seconds for each choice, of policies that plan; below 0: none */
   /* An old map, of which some may have changed, as of `graphdrl explore --believed`; NULL: there is none. Read while
-   * graphdrl_plan() is called. The policy is search:10000 where it is NULL. */
+   * graphdrl_plan() runs. */
   const graphdrl_world* believed;
 } graphdrl_task;
 

@@ -238,9 +238,8 @@ void bind_callbacks(nb::module_& module) {
             return to_numpy(std::move(places), 2);
           },
           nb::rv_policy::automatic,
-          "Where each node seen lies, x and y, y upward. Shape [N, 2], float64; [0, 2] where the world has no places. "
-          "Of "
-          "a known map, too; World.places has them.")
+          "Where each node seen lies, x and y, y upward. Shape [N, 2], float64. [0, 2] in a known map, of which "
+          "World.places says it, and where the world does not say.")
       .def_prop_ro(
           "frontier",
           [](const State& state) {

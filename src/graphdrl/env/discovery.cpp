@@ -167,10 +167,6 @@ void Discovery::connect(const Edge& edge, const Graph::Places& places) {
     known.into->add_edge({edge.b, edge.a, edge.cost});
     if (!joined) known.both_ways->add_edge({edge.a, edge.b, 1});
   }
-  if (!known.places.empty()) {
-    known.placed_costs += edge.cost;
-    known.placed_lengths += length_between(known.places[edge.a], known.places[edge.b]);
-  }
   if (!joined) {
     known.frontier_neighbours[edge.a] += known.frontier[edge.b];
     known.frontier_neighbours[edge.b] += known.frontier[edge.a];

@@ -115,8 +115,7 @@ class Episode {
   double visit_first();
   double reward_of(bool blocked, std::uint32_t visits_before, double gained) const;
 
-  // Every step reads or writes these. They come first, side by side: of a thousand episodes little else is in the
-  // cache.
+  // What every step touches comes first, up to most_free_moves_: it then lies in few lines of the cache.
   std::shared_ptr<HiddenWorld> hidden_;  // null where the map is known
   const KnownGrid* grid_;                // of directions; else null
   NodeId position_ = kNoNode;

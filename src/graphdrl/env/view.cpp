@@ -26,11 +26,6 @@ const Graph& KnownGrid::graph() const {
   return graph_;
 }
 
-double View::straight_cost(NodeId a, NodeId b) const {
-  const double length = length_between(known_->places[a], known_->places[b]);
-  return known_->placed_lengths > 0 ? length * known_->placed_costs / known_->placed_lengths : length;
-}
-
 std::shared_ptr<const Known> make_known(Known&& known) {
   const auto made = std::make_shared<Known>(std::move(known));
   for (NodeId node = 0; node < made->open.node_count(); ++node) {

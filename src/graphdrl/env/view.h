@@ -65,8 +65,6 @@ struct Known {
   // [N], the node of the same name in an old map of the world, kNoNode where that has none; empty without an old map.
   std::vector<NodeId> believed_as = {};
   std::vector<Point> places = {};                      // [N], where nodes lie; empty where the world does not say
-  double placed_costs = 0;                             // of edges between places, the sum …
-  double placed_lengths = 0;                           // … and how far these places are apart in all
   std::vector<std::int32_t> frontier_neighbours = {};  // [N], how many, whichever way edges lead
   int frontier_count = 0;
   Census census = {};
@@ -112,9 +110,6 @@ class View {
   int frontier_count() const { return known_->frontier_count; }
   const Census& census() const { return known_->census; }
   std::span<const Point> places() const { return known_->places; }  // [N]; empty where not known, and of a known map
-  bool has_places() const { return !places().empty(); }
-  // What a straight way between two nodes would cost, by what edges cost for their length. REQUIRES: has_places().
-  double straight_cost(NodeId a, NodeId b) const;
   // As Known's.
   bool ordered() const { return known_->ordered; }
   std::span<const NodeId> recent() const { return known_->recent; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -9,35 +10,39 @@ namespace graphdrl {
 namespace {
 
 // Of a tour (docs/unknown.md).
-constexpr int kMostStepsInPart = 24;    // within a part
+constexpr int kMostStepsInPart = 24;    // from its nearest first visit
 constexpr std::size_t kMostParts = 40;  // the nearest ones
 constexpr double kStraightShare = 0.5;  // of the cost of a way; the rest is that of the ways known
-constexpr double kLess = 1 - 1e-9;      // not by rounding alone
+constexpr double kLess = 1 - 1e-9;      // of a cost: better, and not by rounding alone
 constexpr int kMostPasses = 50;         // of improvements
 
 // A way from the position, and what it costs up to each node of it.
 struct Way {
   std::vector<NodeId> nodes;
   std::vector<double> costs;
+  double length = 0;  // where nodes have places
 };
 
 Way way_to(const Exploration& now, NodeId node, const NearestFirst& search) {
   Way way{.nodes = {now.position()}, .costs = {0}};
   search.append_path_to(node, way.nodes);
   const Graph& open = now.view().open();
+  const std::span<const Point> places = now.view().places();
   for (std::size_t i = 1; i < way.nodes.size(); ++i) {
     const NodeId from = way.nodes[i - 1];
     way.costs.push_back(way.costs.back() + open.cost(from, open.index_of(from, way.nodes[i])));
+    if (!places.empty()) way.length += length_between(places[from], places[way.nodes[i]]);
   }
   return way;
 }
 
-double cost_between(const View& view, const Way& one, const Way& other) {
+// cost_of_length: by what the ways cost; 0 where nodes have no places.
+double cost_between(std::span<const Point> places, double cost_of_length, const Way& one, const Way& other) {
   const auto [fork, _] = std::ranges::mismatch(one.nodes, other.nodes);
   const double shared = one.costs[static_cast<std::size_t>(fork - one.nodes.begin()) - 1];
   const double known = one.costs.back() + other.costs.back() - 2 * shared;
-  if (!view.has_places()) return known;
-  const double straight = view.straight_cost(one.nodes.back(), other.nodes.back());
+  if (cost_of_length == 0) return known;
+  const double straight = cost_of_length * length_between(places[one.nodes.back()], places[other.nodes.back()]);
   return kStraightShare * straight + (1 - kStraightShare) * known;
 }
 
@@ -54,8 +59,7 @@ double cost_of(const std::vector<int>& tour, const TourCosts& costs) {
   return cost + costs.to_end[at];
 }
 
-// Nearest neighbour, then 2-opt and single stops moved, while they help.
-// Gives all stops but the position.
+// All stops but the position: nearest neighbour, then 2-opt and single stops moved, while they help.
 std::vector<int> short_tour(const TourCosts& costs) {
   const int stops = static_cast<int>(costs.to_end.size()) - 1;
   std::vector<int> tour(stops);
@@ -147,12 +151,19 @@ NodeId first_stop_of_frontier_tour(const Exploration& now, NearestFirst& search,
 
   std::vector<Way> ways = {way_to(now, now.position(), search)};
   for (const FrontierPart& part : parts) ways.push_back(way_to(now, part.nearest.node, search));
+  double cost = 0;
+  double length = 0;
+  for (const Way& way : ways) {
+    cost += way.costs.back();
+    length += way.length;
+  }
+  const double cost_of_length = length > 0 ? cost / length : 0;
   TourCosts costs{.between = {ways.size(), std::vector<double>(ways.size())}, .to_end = {}};
   for (std::size_t a = 0; a < ways.size(); ++a) {
     costs.to_end.push_back(now.task().cost_to_end(ways[a].nodes.back()));
     for (std::size_t b = 0; b < a; ++b) {
       costs.between[a][b] = costs.between[b][a] =
-          b == 0 ? ways[a].costs.back() : cost_between(now.view(), ways[a], ways[b]);
+          b == 0 ? ways[a].costs.back() : cost_between(now.view().places(), cost_of_length, ways[a], ways[b]);
     }
   }
   return parts[short_tour(costs).front() - 1].nearest.node;

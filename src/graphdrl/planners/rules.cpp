@@ -11,10 +11,11 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::size_t kMostTrips = 64;  // as many as the episodes of a block in eval/rollout
-constexpr double kAsNear = 1 + 1e-9;    // distances that differ by rounding alone
-constexpr double kDistanceWeight = 3;   // explore_lite's potential_scale, its default
-constexpr double kSizeWeight = 1;       // its gain_scale
+constexpr std::size_t kMostTrips = 64;      // as many as the episodes of a block in eval/rollout
+constexpr double kAsNear = 1 + 1e-9;        // distances that differ by rounding alone
+constexpr double kDistanceWeight = 3;       // explore_lite's potential_scale, its default
+constexpr double kSizeWeight = 1;           // its gain_scale
+constexpr std::uint64_t kTourHeldFor = 15;  // first visits; docs/unknown.md
 
 int visited_neighbours(const Exploration& now, NodeId node) {
   const auto neighbours = now.view().into().neighbours(node);
@@ -58,12 +59,7 @@ bool always(double /*cost*/) {
   return true;
 }
 
-constexpr std::uint64_t kTourHeldFor = 15;  // first visits; docs/unknown.md
-
 }  // namespace
-
-RulePolicy::RulePolicy(Rule rule, int smallest_part)
-    : FirstVisitPolicy(rule == Rule::kTour ? kTourHeldFor : 0), rule_(rule), smallest_part_(smallest_part) {}
 
 void FirstVisitPolicy::act(std::span<const Observation> observations, std::span<int> actions, const Clock& /*clock*/) {
   for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i]);
@@ -111,6 +107,9 @@ bool FirstVisitPolicy::goes_on(const Trip& trip, const Observation& now) const {
   return now.view().version() - trip.version < held_for_ && !now.ground().contains(trip.way.front()) &&
          now.affordable(now.action_to(trip.way.back()));
 }
+
+RulePolicy::RulePolicy(Rule rule, int smallest_part)
+    : FirstVisitPolicy(rule == Rule::kTour ? kTourHeldFor : 0), rule_(rule), smallest_part_(smallest_part) {}
 
 NodeId RulePolicy::choose(const Exploration& now, const Observation& observation) {
   switch (rule_) {
