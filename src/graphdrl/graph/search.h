@@ -56,6 +56,10 @@ class NearestFirst {
     std::uint32_t run = 0;  // the run that met the node last
     NodeId parent = kNoNode;
   };
+  struct Queued {
+    std::uint32_t run = 0;  // the run that put the node into the heap last
+    double cost = 0;        // and for what
+  };
   struct Reached {
     double cost;
     std::int64_t order;
@@ -68,6 +72,7 @@ class NearestFirst {
     if (marks_.size() < static_cast<std::size_t>(node_count)) marks_.resize(node_count);
     if (++run_ == 0) {
       std::fill(marks_.begin(), marks_.end(), Mark());
+      std::fill(queued_.begin(), queued_.end(), Queued());
       run_ = 1;
     }
   }
@@ -105,6 +110,7 @@ class NearestFirst {
 
   template <typename Visit>
   void run_dijkstra(const Graph& graph, NodeId from, double max_cost, const Visit& visit) {
+    if (queued_.size() < marks_.size()) queued_.resize(marks_.size());
     heap_.assign(1, {0, 0, from, from});
     std::int64_t order = 0;
     while (!heap_.empty()) {
@@ -123,6 +129,10 @@ class NearestFirst {
         if (met(neighbours[i])) continue;
         const double cost = here.cost + graph.cost(here.node, i);
         if (cost > max_cost) continue;
+        // Of a node only ever cheaper ways stand in the heap: any other would be met too late.
+        Queued& queued = queued_[neighbours[i]];
+        if (queued.run == run_ && queued.cost <= cost) continue;
+        queued = {run_, cost};
         heap_.push_back({cost, ++order, neighbours[i], here.node});
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
       }
@@ -187,7 +197,8 @@ class NearestFirst {
 
   std::vector<Mark> marks_;  // [N]
   std::uint32_t run_ = 0;
-  std::vector<NodeId> queue_;  // [N], breadth first: in order
+  std::vector<NodeId> queue_;   // [N], breadth first: in order
+  std::vector<Queued> queued_;  // [N], Dijkstra
   std::vector<Reached> heap_;  // Dijkstra; without a heap: what is not met yet
 };
 
