@@ -60,13 +60,39 @@ TEST(Discovery, KeepsCostsToTheEnd) {
       Discovery known("test", kind);
       known.see();
       const auto costs = known.keep_costs_to(0);
-      for (const Edge& edge : random_edges(rng, 15, 20, 9)) {
+      std::vector<Edge> edges = random_edges(rng, 15, 20, 9);
+      for (const Edge& edge : edges) {
         while (known.view().node_count() <= std::max(edge.a, edge.b)) known.see();
         known.connect(edge);
         ASSERT_EQ(*costs, costs_to(known.view().into(), 0));
       }
+      for (; !edges.empty(); edges.pop_back()) {
+        known.disconnect(edges.back().a, edges.back().b);
+        ASSERT_EQ(*costs, costs_to(known.view().into(), 0));
+      }
     }
   }
+}
+
+TEST(Discovery, ForgetsWhatWasNoNode) {
+  Discovery known("test", EdgeKind::kDirected);
+  known.see();
+  const NodeId one = known.see({.prize = 3});
+  const NodeId two = known.see();
+  known.connect({0, one});
+  known.connect({0, two});
+  known.connect({two, 0});
+  EXPECT_EQ(known.view().frontier_neighbours(0), 2);
+  known.disconnect(0, one);
+  known.forget(one);
+  EXPECT_EQ(known.view().frontier_neighbours(0), 1);
+  EXPECT_EQ(known.view().frontier_count(), 2);
+  EXPECT_EQ(known.view().total_prize(), 2);
+  EXPECT_EQ(known.view().prize(one), 0);
+  known.disconnect(0, two);
+  EXPECT_EQ(known.view().frontier_neighbours(0), 1) << "an arc the other way is left";
+  EXPECT_THAT(known.view().both_ways().neighbours(0), ElementsAre(two));
+  EXPECT_THAT(known.view().into().neighbours(0), ElementsAre(two));
 }
 
 TEST(HiddenWorld, ShowsTheEdgesOfNodesVisited) {

@@ -236,6 +236,38 @@ TEST(Graph, GrowsIntoTheSameGraph) {
   }
 }
 
+TEST(Graph, LosesEdges) {
+  Rng rng(9);
+  for (const EdgeKind kind : {EdgeKind::kUndirected, EdgeKind::kDirected}) {
+    for (const int most_cost : {1, 5}) {
+      std::vector<Edge> edges;
+      for (NodeId a = 0; a < 20; ++a) {
+        for (NodeId b = 0; b < a; ++b) {
+          if (rng.uniform() < 0.5) edges.push_back({a, b, 1.0 + rng.index(most_cost)});
+        }
+      }
+      Graph graph = Graph::from_edges(20, edges, kind);
+      while (!edges.empty()) {
+        const int lost = rng.index(static_cast<int>(edges.size()));
+        graph.remove_edge(edges[lost].a, edges[lost].b);
+        edges.erase(edges.begin() + lost);
+        const Graph made = Graph::from_edges(20, edges, kind);
+        ASSERT_EQ(graph.edge_count(), made.edge_count());
+        EXPECT_NEAR(graph.mean_cost(), made.mean_cost(), 1e-12);
+        EXPECT_LE(graph.min_cost(), made.min_cost());
+        EXPECT_GE(graph.max_cost(), made.max_cost());
+        EXPECT_TRUE(graph.integer_costs());
+        for (NodeId node = 0; node < 20; ++node) {
+          ASSERT_TRUE(std::ranges::equal(graph.neighbours(node), made.neighbours(node)));
+          for (int i = 0; i < made.degree(node); ++i) EXPECT_EQ(graph.cost(node, i), made.cost(node, i));
+        }
+      }
+      graph.add_edge({3, 4, 2});
+      EXPECT_EQ(graph.max_cost(), 2);
+    }
+  }
+}
+
 TEST(Graph, TakesEdgesAtAPlace) {
   Graph graph(EdgeKind::kUndirected);
   for (int node = 0; node < 4; ++node) graph.add_node();

@@ -162,10 +162,10 @@ std::vector<std::string> plan_summary(const Answer& answer) {
   if (world.has_cells() && world.map()->frame) {
     length = fmt::format(" ({:.4g} {})", plan.cost * world.map()->frame->cell_size, world.unit());
   }
-  std::vector<std::string> lines = {fmt::format(
-      "visited {} of {} nodes, {:.1f} %, for {}{}{}", plan.visited, world.valid_count(),
-      100.0 * plan.visited / world.valid_count(), decimal(plan.cost), length,
-      answer.until_covered ? "" : fmt::format(" of a budget of {}", decimal(answer.task.budget())))};
+  std::vector<std::string> lines = {
+      fmt::format("visited {} of {} nodes, {:.1f} %, for {}{}{}", plan.visited, world.valid_count(),
+                  100.0 * plan.visited / world.valid_count(), decimal(plan.cost), length,
+                  answer.until_covered ? "" : fmt::format(" of a budget of {}", decimal(answer.task.budget())))};
   if (world.has_prizes()) {
     lines.push_back(fmt::format("prize {} of {}, {:.1f} %", decimal(plan.prize), decimal(world.total_prize()),
                                 world.percent_of_all(plan.prize)));

@@ -7,6 +7,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
+#include "graphdrl/cli/live.h"
 #include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
@@ -37,6 +38,7 @@ struct PlanOptions {
   std::vector<std::string> out;
   bool walk = false;
   bool json = false;
+  LiveArguments live;
 };
 
 std::string name_of(const World& world, NodeId node) {
@@ -205,7 +207,22 @@ void add_explore_command(CLI::App& app) {
   add_seed_option(command, options->request.seed,
                   "For search, for random policies, and for the numbers by which unknown nodes are known");
   add_shared_outputs(command, *options);
-  command.callback([options] { plan(*options); });
+  add_live_options(command, options->live,
+                   {"map", "--start", "--reveal", "--score", "--believed", "--until", "--price", "--time-limit",
+                    "--json", "--walk"});
+  command.get_option("map")->required(false);
+  command.callback([options, &command] {
+    if (options->live.live) {
+      return explore_live(options->live, {.budget = options->asked.budget,
+                                          .end = options->asked.end,
+                                          .policy = options->request.policy,
+                                          .think_s = options->think_time_s,
+                                          .seed = options->request.seed,
+                                          .out = options->out});
+    }
+    if (options->map.empty()) throw CLI::RequiredError("map");
+    plan(*options);
+  });
 }
 
 }  // namespace graphdrl

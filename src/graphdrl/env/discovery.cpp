@@ -132,6 +132,7 @@ Discovery::Discovery(std::string name, EdgeKind kind, bool ordered)
 Discovery::Discovery(const Discovery& other)
     : known_(std::make_shared<Known>(*other.known_)),
       view_(known_),
+      end_(other.end_),
       to_end_(other.to_end_ ? std::make_shared<std::vector<double>>(*other.to_end_) : nullptr) {}
 
 NodeId Discovery::see(const Seen& seen) {
@@ -181,10 +182,39 @@ void Discovery::connect(const Edge& edge, const Graph::Places& places) {
   if (!known.open.directed()) shorten(edge.b, (*to_end_)[edge.a] + edge.cost);
 }
 
-void Discovery::close(NodeId node) {
+void Discovery::disconnect(NodeId from, NodeId to) {
   Known& known = *known_;
-  if (!known.frontier[node]) return;
+  known.open.remove_edge(from, to);
+  bool apart = true;
+  if (known.into) {
+    known.into->remove_edge(to, from);
+    apart = known.open.index_of(to, from) < 0;
+    if (apart) known.both_ways->remove_edge(from, to);
+  }
+  if (apart) {
+    known.frontier_neighbours[from] -= known.frontier[to];
+    known.frontier_neighbours[to] -= known.frontier[from];
+  }
+  // A node without a way to the end was on nobody's way there.
+  if (to_end_ == nullptr || (*to_end_)[to] == kNoLimit) return;
+  *to_end_ = costs_to(view_.into(), end_);
+}
+
+void Discovery::close(NodeId node) {
+  if (!known_->frontier[node]) return;
   count(node);
+  leave_frontier(node);
+}
+
+void Discovery::forget(NodeId node) {
+  Known& known = *known_;
+  known.total_prize -= view_.prize(node);
+  if (!known.prizes.empty()) known.prizes[node] = 0;
+  if (known.frontier[node]) leave_frontier(node);
+}
+
+void Discovery::leave_frontier(NodeId node) {
+  Known& known = *known_;
   known.frontier[node] = false;
   --known.frontier_count;
   for (const NodeId next : view_.both_ways().neighbours(node)) --known.frontier_neighbours[next];
@@ -221,6 +251,7 @@ void Discovery::count(NodeId node) {
 }
 
 std::shared_ptr<const std::vector<double>> Discovery::keep_costs_to(NodeId end) {
+  end_ = end;
   to_end_ = std::make_shared<std::vector<double>>(costs_to(view_.into(), end));
   return to_end_;
 }

@@ -79,8 +79,13 @@ class Discovery {
   // Makes an edge between nodes seen known; does nothing where it is. Frontier nodes at its ends are seen again.
   // places: as Graph::add_edge().
   void connect(const Edge& edge, const Graph::Places& places = {});
+  // An edge between two nodes is there no more.
+  void disconnect(NodeId from, NodeId to);
   // All edges of the node are known now: it is no frontier any more.
   void close(NodeId node);
+  // What was seen turned out to be a node that was known before: the node, which must have no edges any more, is worth
+  // nothing, and no frontier.
+  void forget(NodeId node);
   // What is shown from here on is a later visit's.
   void begin_visit() { ++known_->version; }
 
@@ -90,10 +95,12 @@ class Discovery {
 
  private:
   void count(NodeId node);
+  void leave_frontier(NodeId node);
   void shorten(NodeId from, double cost);
 
   std::shared_ptr<Known> known_;
   View view_;
+  NodeId end_ = kNoNode;                         // of the costs kept
   std::shared_ptr<std::vector<double>> to_end_;  // null until it is asked for
 };
 

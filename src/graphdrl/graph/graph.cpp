@@ -259,6 +259,32 @@ void Graph::insert_arc(NodeId from, NodeId to, double cost, int place) {
   ++arc_count_;
 }
 
+void Graph::remove_edge(NodeId from, NodeId to) {
+  CostSum left{
+      .sum = cost_sum_ - erase_arc(from, to), .least = min_cost_, .most = max_cost_, .integers = integer_costs_};
+  if (!directed()) left.sum -= erase_arc(to, from);
+  if (costs_.empty()) return;
+  // Differences of costs that are no whole numbers may end a little below 0.
+  if (arc_count_ == 0) left = {.least = 1, .most = 1};
+  left.sum = std::max(left.sum, 0.0);
+  settle_costs(left);
+}
+
+double Graph::erase_arc(NodeId from, NodeId to) {
+  const int place = index_of(from, to);
+  const double lost = cost(from, place);
+  List& list = lists_[from];
+  const auto lose = [&](auto& values) {
+    const auto first = values.begin() + list.begin;
+    std::copy(first + place + 1, first + list.size, first + place);
+  };
+  lose(neighbours_);
+  if (!costs_.empty()) lose(costs_);
+  --list.size;
+  --arc_count_;
+  return lost;
+}
+
 Graph Graph::reversed() const {
   if (!directed()) return *this;
   std::vector<Edge> turned = edges();

@@ -82,6 +82,9 @@ class Graph {
   };
   void add_edge(const Edge& edge, const Places& places);
   void add_edge(const Edge& edge) { add_edge(edge, Places()); }
+  // Loses an edge that is there. Costs of others may from then on lie within closer bounds than min_cost() and
+  // max_cost(). Cost: O(degrees). REQUIRES: the graph is not complete.
+  void remove_edge(NodeId from, NodeId to);
 
   // The same graph with every edge turned round. An undirected graph stays as it is.
   Graph reversed() const;
@@ -139,6 +142,7 @@ class Graph {
   // Goes on with the next node, after the neighbours of this one, and their costs if edges have costs, were added.
   void close_node();
   void insert_arc(NodeId from, NodeId to, double cost, int place);
+  double erase_arc(NodeId from, NodeId to);  // gives its cost
   // Forgets costs that are all 1, else computes what is known of them.
   void settle_costs();
   void settle_costs(const CostSum& all);

@@ -199,7 +199,7 @@ class NearestFirst {
   std::uint32_t run_ = 0;
   std::vector<NodeId> queue_;   // [N], breadth first: in order
   std::vector<Queued> queued_;  // [N], Dijkstra
-  std::vector<Reached> heap_;  // Dijkstra; without a heap: what is not met yet
+  std::vector<Reached> heap_;   // Dijkstra; without a heap: what is not met yet
 };
 
 // The cost of the cheapest way from each node to `goal`; kNoLimit if there is no way. into: the graph with its edges

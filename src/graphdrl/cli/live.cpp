@@ -1,0 +1,168 @@
+#include "graphdrl/cli/live.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/cli/program.h"
+#include "graphdrl/io/file_check.h"
+#include "graphdrl/io/map_formats.h"
+#include "graphdrl/live/transcript.h"
+#include "graphdrl/report/plan_files.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::size_t kLongestLine = std::size_t{64} << 20;  // a million moves with names of sixty bytes
+
+// The lines of standard input. A line longer than kLongestLine is skipped: its text is then cut and `cut` true.
+class InputLines {
+ public:
+  bool next() {
+    line_.clear();
+    cut_ = false;
+    bool any = false;
+    while (true) {
+      if (at_ == filled_) {
+        // What is there, without waiting for more as fread() does.
+        const ssize_t got = ::read(STDIN_FILENO, buffer_.data(), buffer_.size());
+        if (got < 0 && errno == EINTR) continue;
+        at_ = 0;
+        filled_ = got > 0 ? static_cast<std::size_t>(got) : 0;
+        if (filled_ == 0) return any;
+      }
+      any = true;
+      const std::string_view rest(buffer_.data() + at_, filled_ - at_);
+      const std::size_t end = rest.find('\n');
+      const std::string_view more = rest.substr(0, end);
+      if (line_.size() + more.size() > kLongestLine) {
+        cut_ = true;
+      } else if (!cut_) {
+        line_ += more;
+      }
+      at_ += end == std::string_view::npos ? rest.size() : end + 1;
+      if (end != std::string_view::npos) return true;
+    }
+  }
+  const std::string& line() const { return line_; }
+  bool cut() const { return cut_; }
+
+ private:
+  std::vector<char> buffer_ = std::vector<char>(1 << 16);
+  std::size_t at_ = 0;
+  std::size_t filled_ = 0;
+  std::string line_;
+  bool cut_ = false;
+};
+
+LiveOptions options_of(const LiveArguments& arguments, const LiveRequest& request) {
+  LiveOptions options{.cover = parse_cover(arguments.cover), .reset_cost = arguments.reset_cost};
+  if (!request.budget.empty()) {
+    const Budget budget = Budget::parse(request.budget);
+    if (request.budget.back() == 'x') {
+      throw Error({.what = "how many states there are is not known",
+                   .expected = "a budget in units of cost",
+                   .got = in_quotes(request.budget),
+                   .where = "--budget"});
+    }
+    options.budget = budget.cost_in(Discovery("live", EdgeKind::kDirected).view());
+  }
+  if (!request.end.empty() && request.end != "anywhere" && request.end != "start") {
+    throw Error({.what = "bad end", .expected = "anywhere or start", .got = in_quotes(request.end), .where = "--end"});
+  }
+  options.end_at_start = request.end == "start";
+  options.policy = request.policy;
+  if (request.think_s) options.think_s = *request.think_s;
+  options.seed = request.seed;
+  const LiveExploration trial(options);  // throws now what it would throw later
+  return options;
+}
+
+// Maps are written as such, all else shows how they became known.
+bool is_map_file(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  return ending == ".graphml" || ending == ".dot" || ending == ".json";
+}
+
+void write_out(const LiveExploration& exploration, const std::string& file) {
+  const Answer answer = exploration.answer("live");
+  if (is_map_file(file)) return write_file(file, format_map(answer.world.to_map(), file));
+  write_plan(answer, file);
+}
+
+}  // namespace
+
+void add_live_options(CLI::App& command, LiveArguments& live, const std::vector<std::string>& others) {
+  CLI::Option* const flag = command.add_flag(
+      "--live", live.live,
+      "No map: a client says on standard input where it is and which moves it has there, a JSON object a line, and is "
+      "told on standard output what to do next (docs/live.md)");
+  for (const std::string& other : others) flag->excludes(command.get_option(other));
+  const auto only_live = [&](CLI::Option* option) { option->needs(flag)->group("With --live"); };
+  only_live(
+      command.add_option("--cover", live.cover, "What counts: states (nodes), or each move of each state (edges)")
+          ->check(CLI::IsMember({"nodes", "edges"}))
+          ->capture_default_str());
+  only_live(command.add_option("--reset-cost", live.reset_cost, "What it costs to start anew; without it nobody does")
+                ->check(CLI::NonNegativeNumber)
+                ->type_name("C"));
+  CLI::Option* const transcript =
+      add_text_option(command, "--transcript", live.transcript, "FILE", "Write down each message with its answer");
+  only_live(transcript);
+  only_live(command.add_flag("--sync", live.sync, "Have each line of it on the disk before the answer is given")
+                ->needs(transcript));
+  only_live(command.add_flag("--resume", live.resume, "Go on where a transcript ends")->needs(transcript));
+}
+
+void explore_live(const LiveArguments& arguments, const LiveRequest& request) {
+  const LiveOptions options = options_of(arguments, request);
+  for (const std::string& file : request.out) {
+    if (is_map_file(file)) {
+      check_writable(file);
+    } else {
+      check_plan_file(file);
+    }
+  }
+  std::optional<Transcript> transcript;
+  const LiveSession::Record record = [&](std::string_view message, std::string_view answer) {
+    if (transcript) transcript->add(message, answer);
+  };
+  std::unique_ptr<LiveSession> session;
+  if (arguments.resume) {
+    Replayed replayed = replay_transcript(arguments.transcript, record);
+    session = std::move(replayed.session);
+    transcript.emplace(arguments.transcript, arguments.sync);
+    print_diagnostic(fmt::format("{}: went on after {} messages{}\n", escaped(arguments.transcript), replayed.turns,
+                                 replayed.torn ? "; the last line was not whole, and is left out" : ""));
+    if (replayed.other_turn > 0) {
+      print_diagnostic(
+          fmt::format("{}: the policy would now choose otherwise from message {} on; the transcript holds\n",
+                      escaped(arguments.transcript), replayed.other_turn));
+    }
+  } else {
+    session = std::make_unique<LiveSession>(options, record);
+    if (!arguments.transcript.empty()) transcript.emplace(arguments.transcript, options, arguments.sync);
+  }
+  InputLines lines;
+  while (lines.next()) {
+    if (lines.cut()) {
+      print_text(fmt::format("{{\"error\":\"a line of more than {} MiB\"}}\n", kLongestLine >> 20));
+    } else if (lines.line().find_first_not_of(" \t\r") != std::string::npos) {
+      print_text(session->answer(lines.line()) + '\n');
+    }
+  }
+  if (const auto last = session->close()) print_text(*last + '\n');
+  if (session->exploration() == nullptr) return;
+  std::vector<std::function<void()>> outputs;
+  for (const std::string& file : request.out) {
+    outputs.emplace_back([&] { write_out(*session->exploration(), file); });
+  }
+  attempt_all(outputs);
+}
+
+}  // namespace graphdrl

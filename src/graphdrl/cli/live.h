@@ -1,0 +1,41 @@
+// `graphdrl explore --live`: an exploration that a client drives over standard input and output.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace graphdrl {
+
+struct LiveArguments {
+  bool live = false;
+  std::string cover = "nodes";
+  std::optional<double> reset_cost;
+  std::string transcript;
+  bool sync = false;
+  bool resume = false;
+};
+
+// What `explore` asks for beside.
+struct LiveRequest {
+  std::string budget;
+  std::string end;
+  std::string policy;
+  std::optional<double> think_s;
+  std::uint64_t seed = 1;
+  std::vector<std::string> out;
+};
+
+// Adds the options that only --live has. known: those of `explore` that do not go with it.
+void add_live_options(CLI::App& command, LiveArguments& live, const std::vector<std::string>& others);
+
+// Answers line by line until the input ends.
+void explore_live(const LiveArguments& arguments, const LiveRequest& request);
+
+}  // namespace graphdrl

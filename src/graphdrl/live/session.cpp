@@ -1,0 +1,320 @@
+#include "graphdrl/live/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "graphdrl/io/json.h"
+
+namespace graphdrl {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+void check_fields(const json& object, std::initializer_list<std::string_view> known, const std::string& what) {
+  if (!object.is_object()) {
+    throw FieldError(what, {.what = "not an object", .got = shortened(object)});
+  }
+  for (const auto& item : object.items()) {
+    if (std::ranges::find(known, item.key()) != known.end()) continue;
+    throw FieldError(escaped(item.key()),
+                     {.what = "an unknown field", .expected = fmt::format("{}", fmt::join(known, ", "))});
+  }
+}
+
+std::string text_of(const json& object, const char* field) {
+  const json& value = object.at(field);
+  if (!value.is_string()) throw FieldError(field, {.what = "bad value", .expected = "a text", .got = shortened(value)});
+  return value.get<std::string>();
+}
+
+double amount_of(const json& object, const char* field) {
+  const json& value = object.at(field);
+  const bool good = value.is_number() && std::isfinite(value.get<double>()) && value.get<double>() >= 0;
+  if (!good) {
+    throw FieldError(field, {.what = "bad value", .expected = "a number of at least 0", .got = shortened(value)});
+  }
+  return value.get<double>();
+}
+
+bool truth_of(const json& object, const char* field) {
+  const json& value = object.at(field);
+  if (!value.is_boolean()) {
+    throw FieldError(field, {.what = "bad value", .expected = "true or false", .got = shortened(value)});
+  }
+  return value.get<bool>();
+}
+
+std::vector<OfferedMove> moves_of(const json& moves) {
+  if (!moves.is_array())
+    throw FieldError("moves", {.what = "bad value", .expected = "a list", .got = shortened(moves)});
+  std::vector<OfferedMove> offered;
+  offered.reserve(moves.size());
+  for (const json& move : moves) {
+    if (move.is_string()) {
+      offered.push_back({.name = move.get<std::string>()});
+      continue;
+    }
+    check_fields(move, {"move", "to", "cost"}, "moves");
+    if (!move.contains("move")) throw FieldError("moves", {.what = "a move has no name", .got = shortened(move)});
+    OfferedMove one{.name = text_of(move, "move")};
+    if (move.contains("to")) one.to = text_of(move, "to");
+    if (move.contains("cost")) one.cost = amount_of(move, "cost");
+    offered.push_back(std::move(one));
+  }
+  return offered;
+}
+
+LiveObservation observation_of(const json& message) {
+  check_fields(message, {"id", "state", "cost", "prize", "moves", "failed", "explorer"}, "");
+  if (!message.contains("state")) throw FieldError("state", {.what = "a message says where the client is, or opens"});
+  LiveObservation seen{.state = text_of(message, "state")};
+  if (message.contains("cost")) seen.cost = amount_of(message, "cost");
+  if (message.contains("prize")) seen.prize = amount_of(message, "prize");
+  if (message.contains("failed")) seen.failed = truth_of(message, "failed");
+  if (message.contains("moves")) seen.moves = moves_of(message.at("moves"));
+  if (message.contains("explorer") && message.at("explorer") != 0) {
+    throw FieldError("explorer",
+                     {.what = "there is one explorer", .expected = "0", .got = shortened(message.at("explorer"))});
+  }
+  return seen;
+}
+
+ordered_json error_json(const std::string& text, const std::string& field) {
+  ordered_json answer{{"error", text}};
+  if (!field.empty()) answer["field"] = field;
+  return answer;
+}
+
+// A step as an answer tells it.
+LiveStep step_of(const json& answer) {
+  LiveStep step;
+  if (answer.contains("move")) {
+    step.kind = LiveStep::Kind::kMove;
+    step.move = text_of(answer, "move");
+  } else if (answer.contains("reset")) {
+    step.kind = LiveStep::Kind::kReset;
+  } else {
+    const std::string done = text_of(answer, "done");
+    for (const auto why : {LiveStep::Done::kCovered, LiveStep::Done::kBudget, LiveStep::Done::kUnreachable}) {
+      if (done == name_of(why)) step.done = why;
+    }
+  }
+  if (answer.contains("expects")) step.expects = text_of(answer, "expects");
+  return step;
+}
+
+}  // namespace
+
+LiveOptions parse_live_options(const json& open, const LiveOptions& defaults) {
+  check_fields(
+      open,
+      {"protocol", "cover", "directed", "budget", "end", "reset_cost", "policy", "think_time", "seed", "explorers"},
+      "open");
+  LiveOptions options = defaults;
+  const auto only = [&](const char* field, const json& value) {
+    if (!open.contains(field) || open.at(field) == value) return;
+    throw FieldError(field, {.what = "bad value", .expected = value.dump(), .got = shortened(open.at(field))});
+  };
+  only("protocol", kLiveProtocol);
+  only("directed", true);  // moves lead one way
+  only("explorers", 1);
+  if (open.contains("cover")) options.cover = parse_cover(text_of(open, "cover"));
+  if (open.contains("budget")) {
+    options.budget = open.at("budget").is_null() ? kNoLimit : amount_of(open, "budget");
+  }
+  if (open.contains("end")) {
+    const std::string end = text_of(open, "end");
+    if (end != "start" && end != "anywhere") {
+      throw FieldError("end", {.what = "bad value", .expected = "anywhere or start", .got = in_quotes(end)});
+    }
+    options.end_at_start = end == "start";
+  }
+  if (open.contains("reset_cost")) {
+    if (open.at("reset_cost").is_null()) {
+      options.reset_cost.reset();
+    } else {
+      options.reset_cost = amount_of(open, "reset_cost");
+    }
+  }
+  if (open.contains("policy")) options.policy = text_of(open, "policy");
+  if (open.contains("think_time")) {
+    options.think_s = open.at("think_time").is_null() ? kNoLimit : amount_of(open, "think_time");
+  }
+  if (open.contains("seed")) {
+    const json& seed = open.at("seed");
+    if (!seed.is_number_unsigned()) {
+      throw FieldError("seed", {.what = "bad value", .expected = "a whole number from 0", .got = shortened(seed)});
+    }
+    options.seed = seed.get<std::uint64_t>();
+  }
+  return options;
+}
+
+ordered_json live_options_json(const LiveOptions& options) {
+  const auto limit = [](double value) { return value == kNoLimit ? ordered_json() : ordered_json(value); };
+  return {{"protocol", kLiveProtocol},
+          {"cover", options.cover == Cover::kNodes ? "nodes" : "edges"},
+          {"budget", limit(options.budget)},
+          {"end", options.end_at_start ? "start" : "anywhere"},
+          {"reset_cost", options.reset_cost ? ordered_json(*options.reset_cost) : ordered_json()},
+          {"policy", options.policy},
+          {"think_time", limit(options.think_s)},
+          {"seed", options.seed}};
+}
+
+ordered_json live_report_json(const LiveReport& report) {
+  ordered_json failed = ordered_json::array();
+  for (const auto& [state, move, failures] : report.failed) {
+    failed.push_back({{"state", state}, {"move", move}, {"failures", failures}});
+  }
+  ordered_json surprises = ordered_json::array();
+  for (const Surprise& one : report.surprises) {
+    ordered_json surprise{{"step", one.step}, {"state", one.state}};
+    if (one.move.empty()) {
+      surprise["reset"] = true;
+    } else {
+      surprise["move"] = one.move;
+    }
+    surprise["expected"] = one.expected;
+    surprise["got"] = one.got;
+    surprises.push_back(std::move(surprise));
+  }
+  return {{"steps", report.steps},
+          {"cost", report.cost},
+          {"states", report.states},
+          {"transitions", report.transitions},
+          {"resets", report.resets},
+          {"failed", std::move(failed)},
+          {"surprises", std::move(surprises)},
+          {"surprise_count", report.surprise_count},
+          {"unreachable", report.unreachable}};
+}
+
+LiveSession::LiveSession(LiveOptions defaults, Record record)
+    : defaults_(std::move(defaults)), record_(std::move(record)) {}
+
+void LiveSession::open(const json& options) {
+  if (exploration_) throw FieldError("open", {.what = "the exploration has begun"});
+  exploration_.emplace(parse_live_options(options, defaults_));
+}
+
+ordered_json LiveSession::step_json(const LiveStep& step) const {
+  ordered_json answer;
+  switch (step.kind) {
+    case LiveStep::Kind::kMove:
+      answer["move"] = step.move;
+      break;
+    case LiveStep::Kind::kReset:
+      answer["reset"] = true;
+      break;
+    case LiveStep::Kind::kDone:
+      answer["done"] = name_of(step.done);
+      answer["report"] = live_report_json(exploration_->report());
+      break;
+  }
+  if (step.expects) answer["expects"] = *step.expects;
+  return answer;
+}
+
+// told: the step of a transcript; null to choose one.
+ordered_json LiveSession::take(const json& message, const LiveStep* told) {
+  if (message.is_object() && message.contains("open")) {
+    check_fields(message, {"id", "open"}, "");
+    open(message.at("open"));
+    return {{"ok", true}, {"protocol", kLiveProtocol}};
+  }
+  const LiveObservation seen = observation_of(message);
+  if (!exploration_) open(json::object());
+  exploration_->observe(seen);
+  if (told != nullptr) exploration_->next_was(*told);
+  const LiveStep& step = exploration_->next();
+  done_ = step.kind == LiveStep::Kind::kDone;
+  return step_json(step);
+}
+
+const std::string* LiveSession::answered(const std::string& id) const {
+  if (id.empty()) return nullptr;
+  const auto found = std::ranges::find(answered_, id, &Answered::id);
+  return found == answered_.end() ? nullptr : &found->answer;
+}
+
+void LiveSession::keep(const std::string& id, const std::string& answer) {
+  if (id.empty()) return;
+  answered_.push_back({.id = id, .answer = answer});
+  if (answered_.size() > kAnswersKept) answered_.pop_front();
+}
+
+std::string LiveSession::answer(std::string_view text) {
+  std::string id;
+  ordered_json answer;
+  bool taken = false;
+  const bool begun = exploration_.has_value();
+  try {
+    const json message = parse_json(text, "", "an object");
+    if (message.is_object() && message.contains("id")) {
+      const json& named = message.at("id");
+      if (!named.is_number_integer() && !named.is_string()) {
+        throw FieldError("id", {.what = "bad value", .expected = "a whole number or a text", .got = shortened(named)});
+      }
+      id = named.dump();
+      if (const std::string* const before = answered(id)) return *before;
+    }
+    answer = take(message, nullptr);
+    taken = true;
+  } catch (const FieldError& error) {
+    answer = error_json(error.what(), error.field());
+  } catch (const Error& error) {
+    answer = error_json(error.what(), "");
+  }
+  if (!taken && !begun && exploration_ && !exploration_->observed()) exploration_.reset();
+  if (!id.empty()) {
+    ordered_json with_id{{"id", json::parse(id)}};
+    with_id.update(answer);
+    answer = std::move(with_id);
+  }
+  std::string line = answer.dump();
+  if (!taken) return line;
+  // What came on several lines goes down as one.
+  if (record_) record_(text.find('\n') == std::string_view::npos ? text : json::parse(text).dump(), line);
+  keep(id, line);
+  return line;
+}
+
+bool LiveSession::replay(std::string_view text, std::string_view told) {
+  const json message = parse_json(text, "");
+  const json answer = parse_json(told, "");
+  std::string id;
+  if (message.is_object() && message.contains("id")) id = message.at("id").dump();
+  keep(id, std::string(told));
+  if (message.is_object() && message.contains("open")) {
+    take(message, nullptr);
+    return true;
+  }
+  const LiveStep step = step_of(answer);
+  if (!exploration_) open(json::object());
+  bool same = true;
+  if (exploration_->options().think_s == kNoLimit) {
+    const LiveStep chosen = (exploration_->observe(observation_of(message)), exploration_->next());
+    same = chosen.kind == step.kind && chosen.move == step.move;
+    if (!same) exploration_->next_was(step);
+  } else {
+    exploration_->observe(observation_of(message));
+    exploration_->next_was(step);
+  }
+  done_ = step.kind == LiveStep::Kind::kDone;
+  return same;
+}
+
+std::optional<std::string> LiveSession::close() const {
+  if (done_) return std::nullopt;
+  const LiveReport report = exploration_ ? exploration_->report() : LiveReport();
+  return ordered_json{{"done", name_of(LiveStep::Done::kClosed)}, {"report", live_report_json(report)}}.dump();
+}
+
+}  // namespace graphdrl

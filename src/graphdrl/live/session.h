@@ -1,0 +1,72 @@
+// The live protocol: one JSON object in, one out. docs/live.md shows every message.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "graphdrl/live/live_exploration.h"
+
+namespace graphdrl {
+
+inline constexpr int kLiveProtocol = 1;
+
+// The options of an exploration as an `open` message has them. Throws Error on an unknown field, and on a bad value.
+LiveOptions parse_live_options(const nlohmann::json& open, const LiveOptions& defaults);
+nlohmann::ordered_json live_options_json(const LiveOptions& options);
+
+nlohmann::ordered_json live_report_json(const LiveReport& report);
+
+// One client's exploration. Not thread safe.
+class LiveSession {
+ public:
+  // Told of every message that was taken, and of its answer, before it is given: both without line breaks. `open`
+  // messages come as they are resolved.
+  using Record = std::function<void(std::string_view message, std::string_view answer)>;
+
+  explicit LiveSession(LiveOptions defaults, Record record = {});
+
+  // What to answer to a message, without a line break. Bad ones are answered with an error and change nothing. What the
+  // record throws gets through.
+  std::string answer(std::string_view message);
+
+  // A message that was taken before, and its answer: of a transcript. Policies choose anew unless their time to think
+  // is limited; where that comes out otherwise the transcript holds, and this gives false. Throws Error on messages
+  // that do not fit.
+  bool replay(std::string_view message, std::string_view answer);
+
+  // The end, where the last answer was not that already: {"done": "closed", "report": …}.
+  std::optional<std::string> close() const;
+
+  // Null until something was observed.
+  const LiveExploration* exploration() const {
+    return exploration_ && exploration_->observed() ? &*exploration_ : nullptr;
+  }
+
+ private:
+  static constexpr std::size_t kAnswersKept = 1024;  // for ids that come again
+
+  struct Answered {
+    std::string id;  // as JSON
+    std::string answer;
+  };
+
+  nlohmann::ordered_json take(const nlohmann::json& message, const LiveStep* told);
+  void open(const nlohmann::json& options);
+  nlohmann::ordered_json step_json(const LiveStep& step) const;
+  const std::string* answered(const std::string& id) const;
+  void keep(const std::string& id, const std::string& answer);
+
+  LiveOptions defaults_;
+  Record record_;
+  std::optional<LiveExploration> exploration_;
+  std::deque<Answered> answered_;
+  bool done_ = false;
+};
+
+}  // namespace graphdrl

@@ -1,0 +1,96 @@
+#include "graphdrl/live/transcript.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/io/text.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::string_view kBegin = "{\"live\":";
+
+AppendedFile new_file(const std::filesystem::path& path) {
+  std::optional<AppendedFile> file = AppendedFile::create(path);
+  if (!file) {
+    throw Error({.what = "the transcript is there already",
+                 .expected = "a new file, or --resume",
+                 .where = escaped(path.string())});
+  }
+  return *std::move(file);
+}
+
+AppendedFile cut_file(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  const std::size_t end = text.rfind('\n') + 1;
+  if (!is_transcript(text) || end == 0) {
+    throw Error({.what = "no transcript", .where = escaped(path.string())});
+  }
+  std::error_code error;
+  if (end < text.size()) std::filesystem::resize_file(path, end, error);
+  if (error) fail_file(path, "cannot cut off a line that is not whole", error.value());
+  return AppendedFile(path);
+}
+
+}  // namespace
+
+Transcript::Transcript(const std::filesystem::path& file, const LiveOptions& options, bool sync)
+    : file_(new_file(file)), sync_(sync) {
+  file_.append(fmt::format("{}{},\"options\":{}}}\n", kBegin, kLiveProtocol, live_options_json(options).dump()));
+  if (sync_) file_.sync();
+}
+
+Transcript::Transcript(const std::filesystem::path& file, bool sync) : file_(cut_file(file)), sync_(sync) {}
+
+void Transcript::add(std::string_view message, std::string_view answer) {
+  file_.append(fmt::format("{{\"message\":{},\"answer\":{}}}\n", message, answer));
+  if (sync_) file_.sync();
+}
+
+bool is_transcript(std::string_view text) {
+  return text.starts_with(kBegin);
+}
+
+Replayed replay_transcript(const std::filesystem::path& path, LiveSession::Record record) {
+  const std::string source = escaped(path.string());
+  const std::string text = read_file(path);
+  if (!is_transcript(text)) throw Error({.what = "no transcript", .where = source});
+  Replayed replayed;
+  std::string_view rest = text;
+  for (int line = 1; !rest.empty(); ++line) {
+    const std::size_t end = rest.find('\n');
+    if (end == std::string_view::npos) {
+      replayed.torn = true;
+      break;
+    }
+    const std::string where = fmt::format("{}, line {}", source, line);
+    parse_json(rest.substr(0, end), where);  // throws what there is to say
+    const auto turn = nlohmann::ordered_json::parse(rest.substr(0, end));
+    rest.remove_prefix(end + 1);
+    const char* const expected = line == 1 ? "options" : "message";
+    if (!turn.is_object() || !turn.contains(expected) || (line > 1 && !turn.contains("answer"))) {
+      throw Error({.what = "no line of a transcript", .where = where});
+    }
+    try {
+      if (line == 1) {
+        replayed.session =
+            std::make_unique<LiveSession>(parse_live_options(turn.at("options"), LiveOptions()), std::move(record));
+        continue;
+      }
+      ++replayed.turns;
+      const bool same = replayed.session->replay(turn.at("message").dump(), turn.at("answer").dump());
+      if (!same && replayed.other_turn == 0) replayed.other_turn = replayed.turns;
+    } catch (const Error& error) {
+      throw Error({.what = error.what(), .where = where});
+    }
+  }
+  if (replayed.session == nullptr) throw Error({.what = "no transcript", .where = source});
+  return replayed;
+}
+
+}  // namespace graphdrl

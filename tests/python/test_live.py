@@ -1,0 +1,148 @@
+"""`graphdrl explore --live`: a client and the program, line by line."""
+
+import json
+import random
+import re
+import signal
+import subprocess
+
+import pytest
+
+from conftest import BIN, ROOT
+
+
+def conversation(lines, *options):
+    """What the program answers to these lines."""
+    process = subprocess.run(
+        [BIN / "graphdrl", "explore", "--live", *options],
+        input="".join(line + "\n" for line in lines), capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert process.returncode == 0, process.stderr
+    return process.stdout.splitlines(), process.stderr
+
+
+def refusal(*arguments):
+    """The one line in which the program refuses its arguments."""
+    process = subprocess.run(
+        [BIN / "graphdrl", *map(str, arguments)], input="", capture_output=True, text=True, timeout=60, check=False
+    )
+    assert process.returncode == 2 and process.stdout == "" and process.stderr.count("\n") == 1, process.stderr
+    return process.stderr
+
+
+class Client:
+    """A machine of seven states, and the program that explores it."""
+
+    def __init__(self, *options):
+        self.process = subprocess.Popen(
+            [BIN / "graphdrl", "explore", "--live", *map(str, options)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+
+    def ask(self, message):
+        print(json.dumps(message), file=self.process.stdin, flush=True)
+        return json.loads(self.process.stdout.readline())
+
+    def kill(self):
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
+
+    def close(self):
+        out, _ = self.process.communicate(timeout=60)
+        return [json.loads(line) for line in out.splitlines()]
+
+
+def outcome(state, answer):
+    """Where a step leads in a machine of seven states."""
+    if "reset" in answer:
+        return "s0"
+    return f"s{(3 * int(state[1:]) + ord(answer['move'])) % 7}"
+
+
+def test_the_page_shows_conversations_as_they_are():
+    text = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```text\n(.*?)```", text, re.DOTALL)
+    assert len(blocks) == 2
+    for block in blocks:
+        lines = block.replace("\n  ", "").splitlines()
+        answers, _ = conversation([line[2:] for line in lines if line.startswith(">")])
+        assert answers[: len(lines) // 2] == [line[2:] for line in lines if line.startswith("<")]
+
+
+def test_a_killed_exploration_goes_on_as_one_that_was_not(tmp_path):
+    rng = random.Random(3)
+    options = ["--cover", "edges", "--reset-cost", "2", "--transcript"]
+
+    def drive(name, kills=()):
+        file = tmp_path / f"{name}.jsonl"
+        client, state, log = Client(*options, file), "s0", []
+        for turn in range(200):
+            message = {"id": turn, "state": state, "moves": ["a", "b", "c", "d"]}
+            answer = client.ask(message)
+            if turn in kills:
+                client.kill()
+                client = Client(*options, file, "--resume")
+                assert client.ask(message) == answer  # the client may not have had it
+            log.append(answer)
+            if "done" in answer:
+                break
+            state = outcome(state, answer)
+        rest = client.close()
+        assert rest == []
+        return log, file.read_bytes()
+
+    whole = drive("whole")
+    for name in "abc":
+        assert drive(name, rng.sample(range(len(whole[0]) - 1), 7)) == whole
+
+
+def test_the_discovered_map_is_a_map(run, tmp_path):
+    files = [tmp_path / name for name in ("map.graphml", "map.dot", "map.json", "walk.html", "walk.svg")]
+    client = Client("--cover", "edges", *[part for file in files for part in ("--out", file)])
+    state, answer = "s0", client.ask({"state": "s0", "moves": ["a", "b"]})
+    while "done" not in answer:
+        state = outcome(state, answer)
+        answer = client.ask({"state": state, "moves": ["a", "b"]})
+    client.close()
+    for file in files[:3]:
+        about = json.loads(run("graphdrl", "maps", "info", file, "--json").stdout)
+        assert about["nodes"] == 7 and about["directed"]
+    assert "s3" in files[3].read_text(encoding="utf-8")
+
+
+def test_what_is_wrong_gets_one_line(tmp_path):
+    answers, _ = conversation(["", "nonsense", '{"state":"a","cost":NaN}', '{"id":1,"state":"a","moves":["x"]}'])
+    assert [list(json.loads(line)) for line in answers[:2]] == [["error"], ["error"]]
+    assert json.loads(answers[2]) == {"id": 1, "move": "x"}
+    assert "reset-cost" in refusal("explore", "--live", "--reset-cost", "-1")
+    assert "--live" in refusal("explore", "--live", "paper:a")
+    assert "a budget in units of cost" in refusal("explore", "--live", "--budget", "1.1x")
+    assert "anywhere or start" in refusal("explore", "--live", "--end", "7")
+    assert "no such policy" in refusal("explore", "--live", "--policy", "best")
+    assert "--transcript" in refusal("explore", "--live", "--sync")
+    assert "--live" in refusal("explore", "--cover", "edges")
+    assert "map" in refusal("explore")
+    taken = tmp_path / "taken"
+    taken.write_text("there\n", encoding="utf-8")
+    assert "--resume" in refusal("explore", "--live", "--transcript", taken)
+    assert "no transcript" in refusal("explore", "--live", "--transcript", taken, "--resume")
+    assert "none" in refusal("explore", "--live", "--transcript", tmp_path / "none", "--resume")
+    assert taken.read_text(encoding="utf-8") == "there\n"
+
+
+def test_long_lines_are_skipped():
+    long = '{"state":"' + "x" * (65 << 20) + '"}'
+    answers, _ = conversation([long, '{"state":"a","moves":[]}'])
+    assert "64 MiB" in json.loads(answers[0])["error"]
+    assert json.loads(answers[1])["done"] == "covered"
+
+
+@pytest.mark.parametrize("policy", ["novelty", "nearest", "explorer", "search:200"])
+def test_a_budget_holds_and_the_walk_comes_home(policy):
+    client = Client("--budget", "15", "--end", "start", "--reset-cost", "1", "--policy", policy)
+    state, spent, answer = "s0", 0, client.ask({"state": "s0", "moves": ["a", "b", "c"]})
+    while "done" not in answer:
+        state, spent = outcome(state, answer), spent + 1
+        answer = client.ask({"state": state, "moves": ["a", "b", "c"]})
+    assert state == "s0" and spent <= 15 and answer["report"]["cost"] == spent
+    client.close()
