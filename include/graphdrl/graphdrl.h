@@ -283,6 +283,33 @@ inline double upper_bound(const World& world, const Task& task) {
   return bound;
 }
 
+// An exploration of something that can say in which state it is and which moves it has. Messages and answers are JSON
+// objects; docs/live.md has all of them. One thread at a time.
+class LiveExploration {
+ public:
+  // options: those of `open`, as {"cover": "edges"}. transcript: a file in which each message is written down with its
+  // answer; empty for none. resume: go on where it ends, with its options.
+  explicit LiveExploration(const std::string& options = "{}", const std::string& transcript = "", bool resume = false) {
+    graphdrl_live* live = nullptr;
+    detail::check(
+        graphdrl_live_begin(options.c_str(), transcript.empty() ? nullptr : transcript.c_str(), resume ? 1 : 0, &live));
+    handle_.reset(live, graphdrl_free);
+  }
+
+  // What to do next, or {"error": …} for a message that is refused.
+  std::string answer(const std::string& message) {
+    const char* answer = nullptr;
+    detail::check(graphdrl_live_answer(handle_.get(), message.c_str(), &answer));
+    return answer;
+  }
+
+  // The map discovered (.graphml, .dot, .json), or the walk through it in the format of another ending.
+  void save(const std::string& path) const { detail::check(graphdrl_live_save(handle_.get(), path.c_str())); }
+
+ private:
+  std::shared_ptr<graphdrl_live> handle_;
+};
+
 }  // namespace v0
 }  // namespace graphdrl
 

@@ -28,6 +28,7 @@ typedef enum graphdrl_status {
 
 typedef struct graphdrl_world graphdrl_world;
 typedef struct graphdrl_result graphdrl_result;
+typedef struct graphdrl_live graphdrl_live;
 
 /* The version: "0.1.0". */
 GRAPHDRL_API const char* graphdrl_version(void);
@@ -144,6 +145,21 @@ GRAPHDRL_API const int32_t* graphdrl_result_seen_after_step(const graphdrl_resul
 GRAPHDRL_API const char* graphdrl_result_json(const graphdrl_result* result);
 /* Writes it in the format of the ending, as `graphdrl plan --out`. */
 GRAPHDRL_API graphdrl_status graphdrl_result_save(const graphdrl_result* result, const char* path);
+
+/* ---- Live explorations ---- */
+
+/* An exploration of something that can say in which state it is and which moves it has, step by step. Messages and
+ * answers are JSON objects; docs/live.md has all of them. One thread at a time; any number may be under way.
+ * options: those of `open`, as {"cover": "edges", "reset_cost": 1}; NULL for the defaults. transcript: a file in which
+ * each message is written down with its answer; NULL for none. resume: other than 0 to go on where it ends, with its
+ * options. */
+GRAPHDRL_API graphdrl_status graphdrl_live_begin(const char* options, const char* transcript, int32_t resume,
+                                                 graphdrl_live** live);
+/* answer: what to do next, or {"error": …} for a message that is refused; valid until the next call with this handle. A
+ * transcript that cannot be written to is GRAPHDRL_FAILED. */
+GRAPHDRL_API graphdrl_status graphdrl_live_answer(graphdrl_live* live, const char* message, const char** answer);
+/* Writes the map discovered (.graphml, .dot, .json), or the walk through it in the format of another ending. */
+GRAPHDRL_API graphdrl_status graphdrl_live_save(const graphdrl_live* live, const char* path);
 
 #ifdef __cplusplus
 }

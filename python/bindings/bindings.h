@@ -35,6 +35,7 @@ void bind_environments(nb::module_& module);
 void bind_evaluation(nb::module_& module);
 void bind_policies(nb::module_& module);
 void bind_training(nb::module_& module);
+void bind_live(nb::module_& module);
 
 template <typename T, typename... Shape>
 using InArray = nb::ndarray<const T, nb::c_contig, nb::device::cpu, Shape...>;

@@ -40,6 +40,7 @@ NB_MODULE(_core, module) {
   bind_evaluation(module);
   bind_environments(module);
   bind_training(module);
+  bind_live(module);
 }
 
 }  // namespace graphdrl::python

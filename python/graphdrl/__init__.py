@@ -1,6 +1,7 @@
 """Visit as many nodes of a graph as a budget allows: plans with bounds, on any graph or map."""
 
 from ._core import FAMILIES, Error, MachineError, State, __version__, threads
+from .live import LiveExploration, Move, Step
 from .planning import Plan, evaluate, explore, plan, set_threads, upper_bound
 from .policies import Explorer, FirstVisits, PaperNetwork, Policy
 from .registration import register_environments
@@ -12,12 +13,15 @@ __all__ = [
     "Error",
     "Explorer",
     "FirstVisits",
+    "LiveExploration",
     "MachineError",
+    "Move",
     "PaperNetwork",
     "Plan",
     "Policy",
     "Run",
     "State",
+    "Step",
     "World",
     "__version__",
     "evaluate",

@@ -1,13 +1,16 @@
 // The C interface as a caller sees it; and that its results are those of the modules behind it.
 #include <graphdrl/graphdrl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
 #include <limits>
+#include <string>
 #include <thread>
 
 namespace {
@@ -288,6 +291,24 @@ TEST(CppHeader, ExploresUntilNothingIsLeft) {
   EXPECT_TRUE(graphdrl::plan(world, graphdrl::Task(4)).seen().empty());
   const graphdrl::Plan by_old_map = graphdrl::plan(world, graphdrl::Task(8).from(1).reveal("edges").believed(world));
   EXPECT_EQ(by_old_map.walk(), (std::vector<std::int32_t>{1, 0, 1, 2, 3}));
+}
+
+TEST(CppHeader, ExploresLive) {
+  const auto folder = std::filesystem::temp_directory_path() / ("graphdrl_live_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  graphdrl::LiveExploration live(R"({"cover":"edges","reset_cost":1})", folder / "transcript");
+  EXPECT_EQ(live.answer(R"({"id":1,"state":"a","moves":["x"]})"), R"({"id":1,"move":"x"})");
+  const std::string done = live.answer(R"({"id":2,"state":"b","moves":[]})");
+  EXPECT_EQ(done.find(R"({"id":2,"done":"covered")"), 0u) << done;
+  EXPECT_NE(live.answer("nonsense").find("\"error\""), std::string::npos);
+  live.save(folder / "map.graphml");
+  EXPECT_EQ(graphdrl::World::from_file(folder / "map.graphml").node_count(), 2);
+  graphdrl::LiveExploration again("{}", folder / "transcript", /*resume=*/true);
+  EXPECT_EQ(again.answer(R"({"id":2,"state":"?"})"), done) << "an id that comes again";
+  EXPECT_THROW(graphdrl::LiveExploration("{}", folder / "transcript"), graphdrl::Error);
+  EXPECT_THROW(graphdrl::LiveExploration(R"({"cover":"faces"})"), graphdrl::Error);
+  EXPECT_THROW(graphdrl::LiveExploration().save(folder / "none.dot"), graphdrl::Error);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(CppHeader, ThrowsWhatGoesWrongAndWhatProgressThrows) {

@@ -110,11 +110,10 @@ TEST(Transcript, GoesOnWhereItEnds) {
       drive(session, 0, killed);
     }
     write_file(file, read_file(file) + R"({"message":{"id":)");  // half a line
-    Replayed replayed = replay_transcript(file);
+    const LiveRun replayed = begin_live(options, {.file = file, .resume = true});
     EXPECT_TRUE(replayed.torn);
     EXPECT_EQ(replayed.turns, killed);
     EXPECT_EQ(replayed.other_turn, 0);
-    Transcript transcript(file, /*sync=*/false);
     // The client may ask again for what it was not told.
     if (killed > 0) {
       const auto message = nlohmann::json{{"id", killed - 1}, {"state", "?"}};
@@ -131,7 +130,7 @@ TEST(Transcript, HoldsWhateverThePolicyWouldChoose) {
              "{\"live\":1,\"options\":{\"protocol\":1,\"policy\":\"nearest\"}}\n"
              "{\"message\":{\"state\":\"a\",\"moves\":[{\"move\":\"x\",\"cost\":1},{\"move\":\"y\",\"cost\":2}]},"
              "\"answer\":{\"move\":\"y\"}}\n");
-  const Replayed replayed = replay_transcript(folder / "t");
+  const LiveRun replayed = replay_transcript(folder / "t");
   EXPECT_EQ(replayed.other_turn, 1);
   replayed.session->answer(R"({"state":"b","moves":[]})");
   EXPECT_EQ(replayed.session->exploration()->report().cost, 2) << "y was done";
@@ -146,7 +145,9 @@ TEST(Transcript, RefusesOtherFiles) {
   EXPECT_THAT(error_of([&] { replay_transcript(folder / "map"); }), HasSubstr("no transcript"));
   EXPECT_THAT(error_of([&] { replay_transcript(folder / "odd"); }), HasSubstr("line 2"));
   EXPECT_THAT(error_of([&] { replay_transcript(folder / "bad"); }), HasSubstr("no such move"));
-  EXPECT_THAT(error_of([&] { Transcript(folder / "bad", LiveOptions(), false); }), HasSubstr("there already"));
+  EXPECT_THAT(error_of([&] { begin_live({}, {.file = folder / "bad"}); }), HasSubstr("there already"));
+  EXPECT_THAT(error_of([&] { begin_live({.policy = "best"}, {.file = folder / "new"}); }), HasSubstr("no such policy"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
 }
 
 }  // namespace

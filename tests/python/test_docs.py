@@ -16,7 +16,8 @@ import pytest
 from conftest import BIN, ROOT, python_blocks
 
 COMMANDS = [
-    *["plan", "explore", "check", "evaluate", "report", "maps info", "maps show", "maps convert", "maps generate"],
+    *["plan", "explore", "serve", "check", "evaluate", "report"],
+    *["maps info", "maps show", "maps convert", "maps generate"],
     *["train", "inspect", "export", "results", "tune", "bench", "completion"],
 ]
 

@@ -1,11 +1,13 @@
 """`graphdrl explore --live`: a client and the program, line by line."""
 
+import http.client
 import json
 import random
 import re
 import signal
 import subprocess
 
+import graphdrl
 import pytest
 
 from conftest import BIN, ROOT
@@ -146,3 +148,91 @@ def test_a_budget_holds_and_the_walk_comes_home(policy):
         answer = client.ask({"state": state, "moves": ["a", "b", "c"]})
     assert state == "s0" and spent <= 15 and answer["report"]["cost"] == spent
     client.close()
+
+
+def test_python_walks_as_the_program(tmp_path):
+    options = {"cover": "edges", "reset_cost": 2.0, "seed": 3, "policy": "nearest"}
+    live = graphdrl.LiveExploration(**options, transcript=tmp_path / "t.jsonl")
+    client = Client("--cover", "edges", "--reset-cost", "2", "--seed", "3", "--policy", "nearest")
+    state, moves = "s0", ["a", ("b", "s0"), graphdrl.Move("c", cost=2.5)]
+    while True:
+        message = {"state": state, "moves": ["a", {"move": "b", "to": "s0"}, {"move": "c", "cost": 2.5}]}
+        answer = client.ask(message)
+        live.observe(state, moves)
+        step = live.next()
+        assert answer.get("expects") == step.expects
+        assert (answer.get("move"), answer.get("reset", False), answer.get("done")) == step[:3]
+        if step.done:
+            break
+        state = outcome(state, answer)
+    client.close()
+    assert live.report() == answer["report"]
+    assert set(live.world().nodes) == {f"s{i}" for i in range(7)} and live.plan().visited == 7
+    live.save(tmp_path / "map.graphml")
+    assert graphdrl.World.from_file(tmp_path / "map.graphml").node_count == 7
+    again = graphdrl.LiveExploration(transcript=tmp_path / "t.jsonl", resume=True)
+    assert again.report() == live.report() and again.next() == live.next()
+
+
+def test_python_says_what_is_wrong(tmp_path):
+    live = graphdrl.LiveExploration()
+    for wrong, says in [
+        (lambda: live.next(), "nothing was observed"),
+        (lambda: live.observe(7), "bad state"),
+        (lambda: live.observe("a", 3), "a list of moves"),
+        (lambda: live.observe("a", [3]), "names or Moves"),
+        (lambda: live.observe("a", ["x", "x"]), "twice"),
+        (lambda: live.observe("a", cost=float("nan")), "NaN"),
+        (lambda: live.observe("a", failed=True), "failed"),
+        (lambda: graphdrl.LiveExploration(cover="faces"), "nodes or edges"),
+        (lambda: graphdrl.LiveExploration(policy="best"), "no such policy"),
+        (lambda: graphdrl.LiveExploration(budget=-1), "budget"),
+        (lambda: graphdrl.LiveExploration(resume=True), "transcript"),
+        (lambda: live.save(tmp_path / "map.dot"), "nothing was observed"),
+    ]:
+        with pytest.raises(graphdrl.Error, match=says):
+            wrong()
+    live.observe("a", ["x"])
+    assert live.next() == graphdrl.Step(move="x")
+
+
+def test_explorations_are_served(tmp_path):
+    with subprocess.Popen([BIN / "graphdrl", "serve", "--port", "0"], stdout=subprocess.PIPE, text=True) as server:
+        try:
+            port = int(re.search(r":(\d+)/", server.stdout.readline())[1])
+
+            def ask(method, path, message=None, headers=None):
+                connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+                connection.request(method, path, None if message is None else json.dumps(message), headers or {})
+                answer = connection.getresponse()
+                return answer.status, answer.read().decode()
+
+            names = []
+            for _ in range(4):
+                status, made = ask("POST", "/explorations", {"open": {"cover": "edges", "reset_cost": 1}})
+                assert status == 201
+                names.append("/explorations/" + json.loads(made)["exploration"])
+            clients = [Client("--cover", "edges", "--reset-cost", "1") for _ in names]
+            states, left = ["s0"] * 4, {0, 1, 2, 3}
+            for turn in range(200):
+                for k in sorted(left):
+                    message = {"id": turn, "state": states[k], "moves": ["a", "b", "c"][: 1 + k % 3]}
+                    status, answer = ask("POST", names[k], message)
+                    answer = json.loads(answer)
+                    assert status == 200 and answer == clients[k].ask(message)
+                    if "done" in answer:
+                        left.remove(k)
+                    else:
+                        states[k] = outcome(states[k], answer)
+            assert not left
+            for client in clients:
+                client.close()
+            assert ask("POST", names[0], {"state": ""})[0] == 400
+            assert ask("POST", names[0], {"state": "x"}, {"Origin": "http://elsewhere.org"})[0] == 403
+            assert ask("PUT", names[0], {"state": "x"})[0] == 405
+            status, transcript = ask("GET", names[0])
+            (tmp_path / "t.jsonl").write_text(transcript, encoding="utf-8")
+            assert graphdrl.LiveExploration(transcript=tmp_path / "t.jsonl", resume=True).report()["states"] > 1
+            assert ask("DELETE", names[0])[0] == 200 and ask("GET", names[0])[0] == 404
+        finally:
+            server.kill()

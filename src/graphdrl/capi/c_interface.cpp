@@ -12,7 +12,10 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/live/transcript.h"
 #include "graphdrl/planners/bound.h"
+#include "graphdrl/report/live_files.h"
 #include "graphdrl/report/plan_files.h"
 
 namespace graphdrl {
@@ -115,6 +118,12 @@ struct graphdrl_result final : graphdrl::Handle {
   graphdrl::Answer answer;
   mutable std::once_flag json_made;
   mutable std::string json;
+};
+
+struct graphdrl_live final : graphdrl::Handle {
+  explicit graphdrl_live(graphdrl::LiveRun begun) : run(std::move(begun)) {}
+  graphdrl::LiveRun run;
+  std::string answer;
 };
 
 using namespace graphdrl;
@@ -326,5 +335,37 @@ graphdrl_status graphdrl_result_save(const graphdrl_result* result, const char* 
     require(path, "the path");
     check_plan_file(result->answer.world, path);
     write_plan(result->answer, path);
+  });
+}
+
+graphdrl_status graphdrl_live_begin(const char* options, const char* transcript, int32_t resume, graphdrl_live** live) {
+  return guarded([&] {
+    require(live, "the place for an exploration");
+    *live = nullptr;
+    if (resume != 0) require(transcript, "the transcript to go on with");
+    const nlohmann::json asked = parse_json(options != nullptr ? options : "{}", "options", "an object");
+    *live = new graphdrl_live(begin_live(parse_live_options(asked, LiveOptions()),
+                                         {.file = transcript != nullptr ? transcript : "", .resume = resume != 0}));
+  });
+}
+
+graphdrl_status graphdrl_live_answer(graphdrl_live* live, const char* message, const char** answer) {
+  return guarded([&] {
+    require(answer, "the place for an answer");
+    *answer = nullptr;
+    require(live, "the exploration");
+    require(message, "the message");
+    live->answer = live->run.session->answer(message);
+    *answer = live->answer.c_str();
+  });
+}
+
+graphdrl_status graphdrl_live_save(const graphdrl_live* live, const char* path) {
+  return guarded([&] {
+    require(live, "the exploration");
+    require(path, "the path");
+    if (live->run.session->exploration() == nullptr) throw Error({.what = "nothing was observed yet"});
+    check_live_file(path);
+    write_live(*live->run.session->exploration(), path);
   });
 }

@@ -25,6 +25,7 @@ void add_maps_command(CLI::App& app);
 void add_plan_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_results_command(CLI::App& app);
+void add_serve_command(CLI::App& app);
 void add_train_command(CLI::App& app, const LearnerSource& learners);
 void add_tune_command(CLI::App& app, const LearnerSource& learners);  // of graphdrl-train, too
 

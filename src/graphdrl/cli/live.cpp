@@ -4,16 +4,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <filesystem>
 #include <functional>
 #include <string_view>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/program.h"
-#include "graphdrl/io/file_check.h"
-#include "graphdrl/io/map_formats.h"
 #include "graphdrl/live/transcript.h"
-#include "graphdrl/report/plan_files.h"
+#include "graphdrl/report/live_files.h"
 
 namespace graphdrl {
 namespace {
@@ -60,7 +57,9 @@ class InputLines {
   bool cut_ = false;
 };
 
-LiveOptions options_of(const LiveArguments& arguments, const LiveRequest& request) {
+}  // namespace
+
+LiveOptions live_options_of(const LiveArguments& arguments, const LiveRequest& request) {
   LiveOptions options{.cover = parse_cover(arguments.cover), .reset_cost = arguments.reset_cost};
   if (!request.budget.empty()) {
     const Budget budget = Budget::parse(request.budget);
@@ -79,30 +78,14 @@ LiveOptions options_of(const LiveArguments& arguments, const LiveRequest& reques
   options.policy = request.policy;
   if (request.think_s) options.think_s = *request.think_s;
   options.seed = request.seed;
-  const LiveExploration trial(options);  // throws now what it would throw later
   return options;
 }
 
-// Maps are written as such, all else shows how they became known.
-bool is_map_file(const std::string& file) {
-  const std::string ending = std::filesystem::path(file).extension().string();
-  return ending == ".graphml" || ending == ".dot" || ending == ".json";
-}
-
-void write_out(const LiveExploration& exploration, const std::string& file) {
-  const Answer answer = exploration.answer("live");
-  if (is_map_file(file)) return write_file(file, format_map(answer.world.to_map(), file));
-  write_plan(answer, file);
-}
-
-}  // namespace
-
-void add_live_options(CLI::App& command, LiveArguments& live, const std::vector<std::string>& others) {
+void add_live_options(CLI::App& command, LiveArguments& live) {
   CLI::Option* const flag = command.add_flag(
       "--live", live.live,
       "No map: a client says on standard input where it is and which moves it has there, a JSON object a line, and is "
       "told on standard output what to do next (docs/live.md)");
-  for (const std::string& other : others) flag->excludes(command.get_option(other));
   const auto only_live = [&](CLI::Option* option) { option->needs(flag)->group("With --live"); };
   only_live(
       command.add_option("--cover", live.cover, "What counts: states (nodes), or each move of each state (edges)")
@@ -120,34 +103,14 @@ void add_live_options(CLI::App& command, LiveArguments& live, const std::vector<
 }
 
 void explore_live(const LiveArguments& arguments, const LiveRequest& request) {
-  const LiveOptions options = options_of(arguments, request);
-  for (const std::string& file : request.out) {
-    if (is_map_file(file)) {
-      check_writable(file);
-    } else {
-      check_plan_file(file);
-    }
+  const LiveOptions options = live_options_of(arguments, request);
+  for (const std::string& file : request.out) check_live_file(file);
+  const LiveRun run =
+      begin_live(options, {.file = arguments.transcript, .sync = arguments.sync, .resume = arguments.resume});
+  if (const std::string note = run.note(); !note.empty()) {
+    print_diagnostic(fmt::format("{}: {}\n", escaped(arguments.transcript), note));
   }
-  std::optional<Transcript> transcript;
-  const LiveSession::Record record = [&](std::string_view message, std::string_view answer) {
-    if (transcript) transcript->add(message, answer);
-  };
-  std::unique_ptr<LiveSession> session;
-  if (arguments.resume) {
-    Replayed replayed = replay_transcript(arguments.transcript, record);
-    session = std::move(replayed.session);
-    transcript.emplace(arguments.transcript, arguments.sync);
-    print_diagnostic(fmt::format("{}: went on after {} messages{}\n", escaped(arguments.transcript), replayed.turns,
-                                 replayed.torn ? "; the last line was not whole, and is left out" : ""));
-    if (replayed.other_turn > 0) {
-      print_diagnostic(
-          fmt::format("{}: the policy would now choose otherwise from message {} on; the transcript holds\n",
-                      escaped(arguments.transcript), replayed.other_turn));
-    }
-  } else {
-    session = std::make_unique<LiveSession>(options, record);
-    if (!arguments.transcript.empty()) transcript.emplace(arguments.transcript, options, arguments.sync);
-  }
+  LiveSession* const session = run.session.get();
   InputLines lines;
   while (lines.next()) {
     if (lines.cut()) {
@@ -160,7 +123,7 @@ void explore_live(const LiveArguments& arguments, const LiveRequest& request) {
   if (session->exploration() == nullptr) return;
   std::vector<std::function<void()>> outputs;
   for (const std::string& file : request.out) {
-    outputs.emplace_back([&] { write_out(*session->exploration(), file); });
+    outputs.emplace_back([&] { write_live(*session->exploration(), file); });
   }
   attempt_all(outputs);
 }

@@ -8,8 +8,7 @@
 
 namespace CLI {
 class App;
-class Option;
-}  // namespace CLI
+}
 
 namespace graphdrl {
 
@@ -32,8 +31,8 @@ struct LiveRequest {
   std::vector<std::string> out;
 };
 
-// Adds the options that only --live has. known: those of `explore` that do not go with it.
-void add_live_options(CLI::App& command, LiveArguments& live, const std::vector<std::string>& others);
+// Adds the options that only --live has.
+void add_live_options(CLI::App& command, LiveArguments& live);
 
 // Answers line by line until the input ends.
 void explore_live(const LiveArguments& arguments, const LiveRequest& request);

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   graphdrl::add_tune_command(app, learners);
   graphdrl::add_evaluate_command(app);
   graphdrl::add_explore_command(app);
+  graphdrl::add_serve_command(app);
   graphdrl::add_plan_command(app);
   graphdrl::add_check_command(app);
   graphdrl::add_report_command(app);

@@ -207,12 +207,14 @@ void add_explore_command(CLI::App& app) {
   add_seed_option(command, options->request.seed,
                   "For search, for random policies, and for the numbers by which unknown nodes are known");
   add_shared_outputs(command, *options);
-  add_live_options(command, options->live,
-                   {"map", "--start", "--reveal", "--score", "--believed", "--until", "--price", "--time-limit",
-                    "--json", "--walk"});
+  add_live_options(command, options->live);
   command.get_option("map")->required(false);
   command.callback([options, &command] {
     if (options->live.live) {
+      for (const char* const other : {"map", "--start", "--reveal", "--score", "--believed", "--until", "--price",
+                                      "--time-limit", "--json", "--walk"}) {
+        if (command.get_option(other)->count() > 0) throw CLI::ExcludesError("--live", other);
+      }
       return explore_live(options->live, {.budget = options->asked.budget,
                                           .end = options->asked.end,
                                           .policy = options->request.policy,

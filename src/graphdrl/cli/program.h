@@ -20,6 +20,8 @@ inline constexpr int kExitBadInput = 2;
 inline constexpr int kExitMachine = 3;       // the machine refused: disk, memory, threads
 inline constexpr int kExitClosedPipe = 141;  // as a shell says of a program that SIGPIPE ended
 
+inline constexpr int kMostPort = 65535;  // of TCP
+
 // Parses the arguments, which runs the chosen command's callback; gives the exit status.
 int run_program(CLI::App& app, int argc, char** argv);
 

@@ -21,8 +21,6 @@
 namespace graphdrl {
 namespace {
 
-constexpr int kMostPort = 65535;
-
 struct ReportOptions {
   std::vector<std::string> inputs;
   std::string map;

@@ -29,6 +29,11 @@ struct Multigraph {
   std::int64_t loops() const {
     return std::ranges::count_if(edges, [](const Edge& edge) { return edge.a == edge.b; });
   }
+  bool weighted() const {
+    return std::ranges::any_of(edges, [](const Edge& edge) { return edge.cost != 1; });
+  }
+  // What an edge is called; empty where it has no label.
+  std::string label(std::size_t edge) const { return labels.empty() ? "" : labels[edge]; }
   // Edges beside another one between the same nodes. graph: the simple graph of these edges.
   std::int64_t parallel_edges(const Graph& graph) const { return std::ssize(edges) - loops() - graph.edge_count(); }
 };
@@ -43,5 +48,10 @@ struct GraphMap {
   GivenTask task = {};
   std::shared_ptr<const Multigraph> multigraph = {};  // null where `graph` has all edges, and they have no labels
 };
+
+// The edges of a map as its file holds them, loops and parallel ones too.
+inline Multigraph all_edges(const GraphMap& map) {
+  return map.multigraph ? *map.multigraph : Multigraph{.edges = map.graph.edges()};
+}
 
 }  // namespace graphdrl

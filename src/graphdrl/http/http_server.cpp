@@ -105,6 +105,8 @@ class HttpServer::Loop {
 
   int port() const { return acceptor_.local_endpoint().port(); }
 
+  HttpAnswer ask(const HttpRequest& request) const { return (*handler_of(request.path, request.method))(request); }
+
   void on(std::string_view method, std::string_view path, Handler handler) {
     routes_[std::string(path)][std::string(method)] = std::move(handler);
   }
@@ -153,11 +155,13 @@ class HttpServer::Loop {
 
   // Why a request is not for a handler. Needs its header alone.
   std::optional<HttpAnswer> refusal(const Parser::value_type& request) const;
+  using Methods = std::map<std::string, Handler, std::less<>>;
+  const Methods* methods_of(std::string_view path) const;
   const Handler* handler_of(std::string_view path, std::string_view method) const;
 
   const HttpLimits limits_;
   const std::size_t most_connections_;
-  std::map<std::string, std::map<std::string, Handler, std::less<>>, std::less<>> routes_;  // by path, by method
+  std::map<std::string, Methods, std::less<>> routes_;  // by path, by method
   asio::io_context loop_{1};
   asio::io_context handlers_{1};  // ends before loop_: what waits there holds connections
   Acceptor acceptor_{loop_};
@@ -276,7 +280,7 @@ class HttpServer::Loop::Connection : public std::enable_shared_from_this<Connect
     asio::post(loop_.handlers_, [self = shared_from_this(), request = std::move(request)]() mutable {
       HttpAnswer answer;
       try {
-        answer = (*self->loop_.handler_of(request.path, request.method))(request);
+        answer = self->loop_.ask(request);
       } catch (const std::bad_alloc&) {
         answer = text_answer(static_cast<int>(http::status::internal_server_error), "out of memory");
       } catch (const std::exception& error) {
@@ -381,21 +385,31 @@ std::optional<HttpAnswer> HttpServer::Loop::refusal(const Parser::value_type& re
     return refused(http::status::forbidden);
   }
   const std::string_view path = view(request.target()).substr(0, request.target().find('?'));
-  const auto route = routes_.find(path);
-  if (route == routes_.end()) return refused(http::status::not_found);
+  const Methods* const methods = methods_of(path);
+  if (methods == nullptr) return refused(http::status::not_found);
   if (handler_of(path, view(request.method_string())) != nullptr) return std::nullopt;
   HttpAnswer answer = refused(http::status::method_not_allowed);
-  for (const auto& [method, handler] : route->second) {
+  for (const auto& [method, handler] : *methods) {
     answer.allow += (answer.allow.empty() ? "" : ", ") + method + (method == "GET" ? ", HEAD" : "");
   }
   return answer;
 }
 
+// Of the path itself, else of all in its folder.
+const HttpServer::Loop::Methods* HttpServer::Loop::methods_of(std::string_view path) const {
+  auto route = routes_.find(path);
+  const std::size_t folder = path.rfind('/');
+  if (route == routes_.end() && folder != std::string_view::npos && folder + 1 < path.size()) {
+    route = routes_.find(std::string(path.substr(0, folder)) + "/*");
+  }
+  return route == routes_.end() ? nullptr : &route->second;
+}
+
 const HttpServer::Handler* HttpServer::Loop::handler_of(std::string_view path, std::string_view method) const {
-  const auto route = routes_.find(path);
-  if (route == routes_.end()) return nullptr;
-  const auto found = route->second.find(method == "HEAD" ? "GET" : method);
-  return found == route->second.end() ? nullptr : &found->second;
+  const Methods* const methods = methods_of(path);
+  if (methods == nullptr) return nullptr;
+  const auto found = methods->find(method == "HEAD" ? "GET" : method);
+  return found == methods->end() ? nullptr : &found->second;
 }
 
 HttpServer::HttpServer(int port, const HttpLimits& limits) : loop_(std::make_unique<Loop>(port, limits)) {}
@@ -408,6 +422,10 @@ int HttpServer::port() const {
 
 void HttpServer::on(std::string_view method, std::string_view path, Handler handler) {
   loop_->on(method, path, std::move(handler));
+}
+
+HttpAnswer HttpServer::ask(const HttpRequest& request) const {
+  return loop_->ask(request);
 }
 
 void HttpServer::run() {

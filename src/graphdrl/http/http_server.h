@@ -62,8 +62,12 @@ class HttpServer {
 
   int port() const;
 
-  // Who answers a method ("GET", "POST") of a path. GET answers HEAD too. REQUIRES: run() has not begun.
+  // Who answers a method ("GET", "POST", "PUT", "DELETE") of a path, or with "/folder/*" of all paths of a folder that
+  // have no handlers of their own. GET answers HEAD too. REQUIRES: run() has not begun.
   void on(std::string_view method, std::string_view path, Handler handler);
+
+  // What the handler of a request answers, without a connection. REQUIRES: there is one; run() is not under way.
+  HttpAnswer ask(const HttpRequest& request) const;
 
   // Answers until stop().
   void run();

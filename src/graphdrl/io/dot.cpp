@@ -421,9 +421,15 @@ std::string format_dot(const GraphMap& map, const NodeColumn& column) {
     if (!column.name.empty() && !column.values[node].empty()) add(column.name, dot_quoted(column.values[node]));
     text += attributes.empty() ? fmt::format("  {};\n", node) : fmt::format("  {} [{}];\n", node, attributes);
   }
-  for (const Edge& edge : map.graph.edges()) {
-    text += fmt::format("  {} {} {}", edge.a, directed ? "->" : "--", edge.b);
-    text += map.graph.weighted() ? fmt::format(" [weight=\"{}\"];\n", edge.cost) : ";\n";
+  const Multigraph all = all_edges(map);
+  const bool weighted = all.weighted();
+  for (std::size_t i = 0; i < all.edges.size(); ++i) {
+    const Edge& edge = all.edges[i];
+    std::string attributes;
+    if (const std::string label = all.label(i); !label.empty()) attributes = "label=" + dot_quoted(label);
+    if (weighted) attributes += fmt::format("{}weight=\"{}\"", attributes.empty() ? "" : ", ", edge.cost);
+    text += fmt::format("  {} {} {}{};\n", edge.a, directed ? "->" : "--", edge.b,
+                        attributes.empty() ? "" : fmt::format(" [{}]", attributes));
   }
   return text + "}\n";
 }

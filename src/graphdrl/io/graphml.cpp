@@ -166,7 +166,10 @@ std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
   }
   if (!map.places.unit.empty()) append_key(root, "unit", "graph", "string");
   if (!column.name.empty()) append_key(root, column.name.c_str(), "node", "string");
-  if (map.graph.weighted()) append_key(root, "weight", "edge", "double");
+  const Multigraph all = all_edges(map);
+  const bool weighted = all.weighted();
+  if (weighted) append_key(root, "weight", "edge", "double");
+  if (!all.labels.empty()) append_key(root, "label", "edge", "string");
   pugi::xml_node graph = root.append_child("graph");
   graph.append_attribute("edgedefault") = map.graph.directed() ? "directed" : "undirected";
   if (!map.places.unit.empty()) append_data(graph, "unit", map.places.unit);
@@ -184,11 +187,13 @@ std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
     append_data(item, "x", fmt::format("{}", points[node].x));
     append_data(item, "y", fmt::format("{}", points[node].y));
   }
-  for (const Edge& edge : map.graph.edges()) {
+  for (std::size_t i = 0; i < all.edges.size(); ++i) {
+    const Edge& edge = all.edges[i];
     pugi::xml_node item = graph.append_child("edge");
     item.append_attribute("source") = id_of(edge.a).c_str();
     item.append_attribute("target") = id_of(edge.b).c_str();
-    if (map.graph.weighted()) append_data(item, "weight", fmt::format("{}", edge.cost));
+    if (weighted) append_data(item, "weight", fmt::format("{}", edge.cost));
+    if (const std::string label = all.label(i); !label.empty()) append_data(item, "label", xml_text(label));
   }
   std::ostringstream stream;
   document.save(stream, "  ");

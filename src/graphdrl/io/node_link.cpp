@@ -204,11 +204,14 @@ GraphMap parse_node_link(std::string_view text, const std::string& source, const
 
 std::string format_node_link(const GraphMap& map) {
   const auto& [graph, blocked, labels, prizes, places, task, multigraph] = map;
+  const Multigraph all = all_edges(map);
+  const bool weighted = all.weighted();
   std::string text;
   const std::vector<std::string> ids = fitted_labels(labels, valid_utf8);
   const auto append_id = [&](NodeId node) { text += ids.empty() ? std::to_string(node) : json(ids[node]).dump(); };
   const std::string unit = places.unit.empty() ? "" : R"("unit":)" + json(valid_utf8(places.unit)).dump();
-  text += fmt::format(R"({{"directed":{},"multigraph":false,"graph":{{{}}},"nodes":[)", graph.directed(), unit);
+  text += fmt::format(R"({{"directed":{},"multigraph":{},"graph":{{{}}},"nodes":[)", graph.directed(),
+                      multigraph != nullptr, unit);
   for (NodeId node = 0; node < graph.node_count(); ++node) {
     text += node == 0 ? R"({"id":)" : R"(,{"id":)";
     append_id(node);
@@ -221,19 +224,16 @@ std::string format_node_link(const GraphMap& map) {
     text += '}';
   }
   text += R"(],"links":[)";
-  bool first = true;
-  for (NodeId node = 0; node < graph.node_count(); ++node) {
-    for (int i = 0; i < graph.degree(node); ++i) {
-      const NodeId next = graph.neighbours(node)[i];
-      if (!graph.directed() && next < node) continue;  // stands with the other node
-      text += first ? R"({"source":)" : R"(,{"source":)";
-      first = false;
-      append_id(node);
-      text += R"(,"target":)";
-      append_id(next);
-      if (graph.weighted()) text += R"(,"weight":)" + json(graph.cost(node, i)).dump();
-      text += '}';
+  for (std::size_t i = 0; i < all.edges.size(); ++i) {
+    text += i == 0 ? R"({"source":)" : R"(,{"source":)";
+    append_id(all.edges[i].a);
+    text += R"(,"target":)";
+    append_id(all.edges[i].b);
+    if (weighted) text += R"(,"weight":)" + json(all.edges[i].cost).dump();
+    if (const std::string label = all.label(i); !label.empty()) {
+      text += R"(,"label":)" + json(valid_utf8(label)).dump();
     }
+    text += '}';
   }
   text += "]}\n";
   return text;

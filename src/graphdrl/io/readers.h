@@ -3,7 +3,8 @@
 // is_NAME knows a text by its content. parse_NAME throws Error, naming `source` and mostly the line, on anything that
 // is not of the format, on values out of range and on a map without a free node. What it guesses or leaves out it tells
 // options.note. Attributes of nodes and edges count by their usual names [attributes.h], defaults too; other ones are
-// skipped. format_NAME ends with a line break; of a graph it keeps all but the task, loops and parallel edges.
+// skipped. format_NAME ends with a line break; of a graph it keeps all but the task. Loops, parallel edges and names of
+// edges are kept by node-link JSON, GraphML and DOT.
 #pragma once
 
 #include <functional>

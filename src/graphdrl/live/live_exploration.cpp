@@ -66,6 +66,7 @@ LiveExploration::LiveExploration(LiveOptions options)
     throw Error({.what = "the paper's networks walk on grids", .got = in_quotes(options_.policy, 200)});
   }
   policy_ = make_online_policy(spec, options_.seed);
+  stops_ = spec.kind != PolicyKind::kRandomWalk;
 }
 
 LiveExploration::~LiveExploration() = default;
@@ -187,8 +188,9 @@ std::optional<LiveStep> LiveExploration::choose() {
   if (way_home < kNoLimit && way_home > now.spendable) {
     if (now.position == task_->end()) return std::nullopt;
     action = action_home();
-  } else if (way_home == kNoLimit && Exploration(now, now.ground()).nearest_first_visit(look_).node == kNoNode) {
-    return std::nullopt;  // and no way home by which a policy could end
+  } else if ((way_home == kNoLimit || !stops_) &&
+             Exploration(now, now.ground()).nearest_first_visit(look_).node == kNoNode) {
+    return std::nullopt;  // by itself the policy would go on, or look for a way home
   } else {
     policy_->act({&now, 1}, {&action, 1}, Clock().at_most(options_.think_s));
   }
@@ -283,10 +285,8 @@ LiveReport LiveExploration::report() const {
   return report;
 }
 
-Answer LiveExploration::answer(const std::string& name) const {
-  // States by their own numbers: nodes of untried moves are none.
+GraphMap LiveExploration::map() const {
   GraphMap map;
-  const auto number = [&](NodeId node) { return static_cast<NodeId>(graph_.place(node).state); };
   Multigraph all;
   for (std::int32_t state = 0; state < graph_.state_count(); ++state) {
     map.labels.push_back(graph_.name(state));
@@ -294,27 +294,36 @@ Answer LiveExploration::answer(const std::string& name) const {
     if (!map.prizes.empty()) map.prizes.push_back(graph_.prize(state));
     for (const StateMove& move : graph_.moves(state)) {
       if (move.to == kNoNode || (move.gone && !move.tried)) continue;
-      all.edges.push_back({state, number(move.to), move.cost});
+      all.edges.push_back({state, graph_.place(move.to).state, move.cost});
       all.labels.push_back(graph_.move_name(move.name));
     }
   }
+  map.graph = Graph::from_edges(graph_.state_count(), all.edges, EdgeKind::kDirected);
+  map.blocked.resize(graph_.state_count());
+  map.multigraph = std::make_shared<const Multigraph>(std::move(all));
+  map.task.start = graph_.place(walk_.front()).state;
+  return map;
+}
+
+Answer LiveExploration::answer(const std::string& name) const {
+  // States by their own numbers: nodes of untried moves are none.
+  const auto number = [&](NodeId node) { return static_cast<NodeId>(graph_.place(node).state); };
+  GraphMap map = this->map();
+  std::vector<Edge> edges = map.multigraph->edges;
+  map.multigraph = nullptr;  // of pictures
   std::unordered_set<std::uint64_t> joined;
   const auto join = [&](NodeId from, NodeId to) {
     return joined.insert(static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to)).second;
   };
-  for (const Edge& edge : all.edges) join(edge.a, edge.b);
+  for (const Edge& edge : edges) join(edge.a, edge.b);
   for (std::size_t i = 1; i < walk_.size(); ++i) {
     const NodeId from = number(walk_[i - 1]);
     const NodeId to = number(walk_[i]);
     if (!join(from, to)) continue;
     const bool reset = options_.reset_cost && to == graph_.reset_target();
-    all.edges.push_back({from, to, reset ? *options_.reset_cost : 1});
-    all.labels.emplace_back(reset ? "reset" : "");
+    edges.push_back({from, to, reset ? *options_.reset_cost : 1});
   }
-  map.graph = Graph::from_edges(graph_.state_count(), all.edges, EdgeKind::kDirected);
-  map.blocked.resize(graph_.state_count());
-  map.multigraph = std::make_shared<const Multigraph>(std::move(all));
-  map.task.start = number(walk_.front());
+  map.graph = Graph::from_edges(graph_.state_count(), edges, EdgeKind::kDirected);
   World world(name, std::move(map));
 
   Plan plan;

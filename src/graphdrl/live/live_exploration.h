@@ -114,9 +114,11 @@ class LiveExploration {
   bool observed() const { return position_ >= 0; }
   LiveReport report() const;
 
-  // What is known of the states as a map with a walk, for files and pictures: states are nodes, by name; moves that
-  // were done or are said to lead somewhere are edges. So are resets that were made, and steps of the walk that none of
-  // these makes any more. REQUIRES: something was observed.
+  // What is known as a map: states are nodes, by name; moves that were done, or are said to lead somewhere, are edges,
+  // by name. REQUIRES: something was observed.
+  GraphMap map() const;
+  // The same with the walk, for pictures. Resets that were made are edges, too, and so are steps of the walk that no
+  // move makes any more. REQUIRES: something was observed.
   Answer answer(const std::string& name) const;
 
  private:
@@ -139,6 +141,7 @@ class LiveExploration {
   LiveOptions options_;
   StateGraph graph_;
   NoveltyPolicy* novelty_ = nullptr;  // that of policy_, where it is one
+  bool stops_ = true;                 // whether the policy stops where nothing is left
   std::unique_ptr<Policy> policy_;
   std::optional<Task> task_;  // once there is a start
   std::int32_t position_ = -1;

@@ -283,6 +283,7 @@ std::string LiveSession::answer(std::string_view text) {
   // What came on several lines goes down as one.
   if (record_) record_(text.find('\n') == std::string_view::npos ? text : json::parse(text).dump(), line);
   keep(id, line);
+  last_answer_ = line;
   return line;
 }
 
@@ -292,6 +293,7 @@ bool LiveSession::replay(std::string_view text, std::string_view told) {
   std::string id;
   if (message.is_object() && message.contains("id")) id = message.at("id").dump();
   keep(id, std::string(told));
+  last_answer_ = told;
   if (message.is_object() && message.contains("open")) {
     take(message, nullptr);
     return true;

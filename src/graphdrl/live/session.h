@@ -40,6 +40,9 @@ class LiveSession {
   // that do not fit.
   bool replay(std::string_view message, std::string_view answer);
 
+  // The last answer to a message that was taken; empty before.
+  const std::string& last_answer() const { return last_answer_; }
+
   // The end, where the last answer was not that already: {"done": "closed", "report": …}.
   std::optional<std::string> close() const;
 
@@ -66,6 +69,7 @@ class LiveSession {
   Record record_;
   std::optional<LiveExploration> exploration_;
   std::deque<Answered> answered_;
+  std::string last_answer_;
   bool done_ = false;
 };
 

@@ -246,6 +246,7 @@ void StateGraph::failed(std::int32_t state, std::int32_t index) {
 
 bool StateGraph::retry() {
   bool any = false;
+  changed_ = false;  // a policy that has seen all this and stopped must think again
   for (const Place& place : std::exchange(waiting_, {})) {
     State& here = states_[place.state];
     StateMove& move = here.moves[place.move];

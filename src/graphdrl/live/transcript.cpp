@@ -39,16 +39,24 @@ AppendedFile cut_file(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string transcript_head(const LiveOptions& options) {
+  return fmt::format("{}{},\"options\":{}}}\n", kBegin, kLiveProtocol, live_options_json(options).dump());
+}
+
+std::string transcript_line(std::string_view message, std::string_view answer) {
+  return fmt::format("{{\"message\":{},\"answer\":{}}}\n", message, answer);
+}
+
 Transcript::Transcript(const std::filesystem::path& file, const LiveOptions& options, bool sync)
     : file_(new_file(file)), sync_(sync) {
-  file_.append(fmt::format("{}{},\"options\":{}}}\n", kBegin, kLiveProtocol, live_options_json(options).dump()));
+  file_.append(transcript_head(options));
   if (sync_) file_.sync();
 }
 
 Transcript::Transcript(const std::filesystem::path& file, bool sync) : file_(cut_file(file)), sync_(sync) {}
 
 void Transcript::add(std::string_view message, std::string_view answer) {
-  file_.append(fmt::format("{{\"message\":{},\"answer\":{}}}\n", message, answer));
+  file_.append(transcript_line(message, answer));
   if (sync_) file_.sync();
 }
 
@@ -56,16 +64,29 @@ bool is_transcript(std::string_view text) {
   return text.starts_with(kBegin);
 }
 
-Replayed replay_transcript(const std::filesystem::path& path, LiveSession::Record record) {
+std::string LiveRun::note() const {
+  if (turns == 0 && !torn) return "";
+  std::string text = fmt::format("went on after {} message{}", turns, turns == 1 ? "" : "s");
+  if (torn) text += "; the last line was not whole, and is left out";
+  if (other_turn > 0) {
+    text +=
+        fmt::format("; the policy would now choose otherwise from message {} on: what is written holds", other_turn);
+  }
+  return text;
+}
+
+namespace {
+
+LiveRun replay(const std::filesystem::path& path, LiveSession::Record record) {
   const std::string source = escaped(path.string());
   const std::string text = read_file(path);
   if (!is_transcript(text)) throw Error({.what = "no transcript", .where = source});
-  Replayed replayed;
+  LiveRun run;
   std::string_view rest = text;
   for (int line = 1; !rest.empty(); ++line) {
     const std::size_t end = rest.find('\n');
     if (end == std::string_view::npos) {
-      replayed.torn = true;
+      run.torn = true;
       break;
     }
     const std::string where = fmt::format("{}, line {}", source, line);
@@ -78,19 +99,43 @@ Replayed replay_transcript(const std::filesystem::path& path, LiveSession::Recor
     }
     try {
       if (line == 1) {
-        replayed.session =
+        run.session =
             std::make_unique<LiveSession>(parse_live_options(turn.at("options"), LiveOptions()), std::move(record));
         continue;
       }
-      ++replayed.turns;
-      const bool same = replayed.session->replay(turn.at("message").dump(), turn.at("answer").dump());
-      if (!same && replayed.other_turn == 0) replayed.other_turn = replayed.turns;
+      ++run.turns;
+      const bool same = run.session->replay(turn.at("message").dump(), turn.at("answer").dump());
+      if (!same && run.other_turn == 0) run.other_turn = run.turns;
     } catch (const Error& error) {
       throw Error({.what = error.what(), .where = where});
     }
   }
-  if (replayed.session == nullptr) throw Error({.what = "no transcript", .where = source});
-  return replayed;
+  if (run.session == nullptr) throw Error({.what = "no transcript", .where = source});
+  return run;
+}
+
+}  // namespace
+
+LiveRun begin_live(const LiveOptions& options, const TranscriptOptions& wanted) {
+  const LiveExploration trial(options);  // throws now what it would throw later
+  // The session writes to it; it is there once the session has been played up to its end.
+  const auto transcript = std::make_shared<std::optional<Transcript>>();
+  const LiveSession::Record record = [transcript](std::string_view message, std::string_view answer) {
+    if (*transcript) (*transcript)->add(message, answer);
+  };
+  LiveRun run;
+  if (wanted.resume) {
+    run = replay(wanted.file, record);
+    transcript->emplace(wanted.file, wanted.sync);
+    return run;
+  }
+  run.session = std::make_unique<LiveSession>(options, record);
+  if (!wanted.file.empty()) transcript->emplace(wanted.file, options, wanted.sync);
+  return run;
+}
+
+LiveRun replay_transcript(const std::filesystem::path& file) {
+  return replay(file, {});
 }
 
 }  // namespace graphdrl

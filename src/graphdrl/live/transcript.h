@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "graphdrl/io/file.h"
 #include "graphdrl/live/session.h"
@@ -12,6 +14,10 @@
 namespace graphdrl {
 
 // Lines of JSON: the options, then a message with its answer each.
+std::string transcript_head(const LiveOptions& options);
+std::string transcript_line(std::string_view message, std::string_view answer);
+
+// These in a file.
 class Transcript {
  public:
   // A new file. Throws Error, also where the file is there. sync: each line is on the disk before its answer is given,
@@ -27,17 +33,29 @@ class Transcript {
   bool sync_;
 };
 
-// A transcript played again.
-struct Replayed {
+// A session that may write a transcript. Not thread safe.
+struct LiveRun {
   std::unique_ptr<LiveSession> session;
-  std::int64_t turns = 0;       // messages
+  // Of a session that goes on:
+  std::int64_t turns = 0;       // messages taken before
   std::int64_t other_turn = 0;  // the first one, from 1, at which the policy would now choose otherwise; 0: none
   bool torn = false;            // the last line was not whole, and is left out
+
+  // What a user should know of these; empty where nothing is to be said.
+  std::string note() const;
 };
 
-// record: of the session that it gives, for messages to come. Throws Error, naming the line, on anything but a
-// transcript.
-Replayed replay_transcript(const std::filesystem::path& file, LiveSession::Record record = {});
+struct TranscriptOptions {
+  std::filesystem::path file;  // empty: none
+  bool sync = false;
+  bool resume = false;  // go on where it ends; then the options are those of the transcript
+};
+
+// Throws Error on bad options, on a file that is there or, to go on with, is no transcript, naming the line.
+LiveRun begin_live(const LiveOptions& options, const TranscriptOptions& transcript = {});
+
+// A transcript played again, without writing to it. Throws Error, naming the line, on anything but a transcript.
+LiveRun replay_transcript(const std::filesystem::path& file);
 
 // Whether a text begins as a transcript does.
 bool is_transcript(std::string_view text);

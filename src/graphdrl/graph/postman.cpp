@@ -1,0 +1,281 @@
+#include "graphdrl/graph/postman.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/maximum_weighted_matching.hpp>
+#include <boost/graph/successive_shortest_path_nonnegative_weights.hpp>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "graphdrl/base/error.h"
+#include "graphdrl/graph/search.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr double kFineCosts =
+    1e9;  // of the dearest edge: finer differences of costs that are no whole numbers are lost
+
+// An edge of an Eulerian graph, as often as it stands there.
+struct Part {
+  NodeId a;
+  NodeId b;
+  std::int64_t edge;
+};
+
+// Costs as whole numbers, with which sums are exact.
+class WholeCosts {
+ public:
+  explicit WholeCosts(const Graph& graph, double reset) {
+    const bool whole = graph.integer_costs() && std::floor(reset) == reset;
+    const double most = std::max({graph.max_cost(), reset, 1e-300});
+    scale_ = whole ? 1 : kFineCosts / most;
+  }
+  std::int64_t of(double cost) const { return std::llround(cost * scale_); }
+
+ private:
+  double scale_;
+};
+
+// The cheapest edge from each node to each neighbour of the simple graph.
+class CheapestEdges {
+ public:
+  CheapestEdges(const Multigraph& graph, const Graph& simple) : simple_(simple), edge_(simple.node_count()) {
+    for (NodeId node = 0; node < simple.node_count(); ++node) edge_[node].assign(simple.degree(node), -1);
+    for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+      const auto& [a, b, cost] = graph.edges[i];
+      take(a, b, static_cast<std::int64_t>(i), graph);
+      if (!simple.directed()) take(b, a, static_cast<std::int64_t>(i), graph);
+    }
+  }
+  std::int64_t edge(NodeId from, NodeId to) const { return edge_[from][simple_.index_of(from, to)]; }
+
+ private:
+  void take(NodeId from, NodeId to, std::int64_t edge, const Multigraph& graph) {
+    if (from == to) return;
+    std::int64_t& best = edge_[from][simple_.index_of(from, to)];
+    if (best < 0 || graph.edges[edge].cost < graph.edges[best].cost) best = edge;
+  }
+
+  const Graph& simple_;
+  std::vector<std::vector<std::int64_t>> edge_;  // as the neighbours of simple_
+};
+
+// A flow of least cost in a network with many sources and sinks.
+class LeastCostFlow {
+  using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
+  using Properties =
+      boost::property<boost::edge_capacity_t, std::int64_t,
+                      boost::property<boost::edge_residual_capacity_t, std::int64_t,
+                                      boost::property<boost::edge_reverse_t, Traits::edge_descriptor,
+                                                      boost::property<boost::edge_weight_t, std::int64_t>>>>;
+  using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, boost::no_property, Properties>;
+
+ public:
+  using Arc = Traits::edge_descriptor;
+
+  explicit LeastCostFlow(int nodes) : network_(nodes + 2), source_(nodes), sink_(nodes + 1) {}
+
+  Arc add(int from, int to, std::int64_t capacity, std::int64_t cost) {
+    const Arc arc = boost::add_edge(from, to, network_).first;
+    const Arc back = boost::add_edge(to, from, network_).first;
+    put(arc, back, capacity, cost);
+    put(back, arc, 0, -cost);
+    return arc;
+  }
+  // A node has so many units more than it needs, or less.
+  void supply(int node, std::int64_t units) {
+    if (units > 0) add(source_, node, units, 0);
+    if (units < 0) add(node, sink_, -units, 0);
+    left_ += std::max<std::int64_t>(units, 0);
+  }
+  // Whether all units can flow.
+  bool run() {
+    boost::successive_shortest_path_nonnegative_weights(network_, source_, sink_);
+    std::int64_t flow = 0;
+    for (const Arc& arc : boost::make_iterator_range(boost::out_edges(source_, network_))) flow += units(arc);
+    return flow == left_;
+  }
+  std::int64_t units(const Arc& arc) const {
+    return boost::get(boost::edge_capacity, network_, arc) - boost::get(boost::edge_residual_capacity, network_, arc);
+  }
+
+ private:
+  void put(const Arc& arc, const Arc& back, std::int64_t capacity, std::int64_t cost) {
+    boost::put(boost::edge_capacity, network_, arc, capacity);
+    boost::put(boost::edge_reverse, network_, arc, back);
+    boost::put(boost::edge_weight, network_, arc, cost);
+  }
+
+  Network network_;
+  int source_;
+  int sink_;
+  std::int64_t left_ = 0;
+};
+
+// Walks all parts, from a node on [Hierholzer 1873]. Empty where they do not hang together. REQUIRES: as many parts
+// lead to a node as from it, but for the ends.
+std::optional<EdgeWalk> eulerian_walk(const Multigraph& graph, bool directed, NodeId node_count, NodeId start,
+                                      const std::vector<Part>& parts, double reset_cost) {
+  std::vector<std::vector<std::size_t>> at(node_count);
+  for (std::size_t i = parts.size(); i-- > 0;) {  // taken from the end: the first come first
+    at[parts[i].a].push_back(i);
+    if (!directed && parts[i].a != parts[i].b) at[parts[i].b].push_back(i);
+  }
+  std::vector<bool> used(parts.size());
+  struct Step {
+    NodeId node;
+    std::int64_t edge;
+  };
+  std::vector<Step> stack = {{.node = start, .edge = 0}};
+  EdgeWalk walk;
+  while (!stack.empty()) {
+    const NodeId here = stack.back().node;
+    while (!at[here].empty() && used[at[here].back()]) at[here].pop_back();
+    if (!at[here].empty()) {
+      const Part& part = parts[at[here].back()];
+      used[at[here].back()] = true;
+      stack.push_back({.node = part.a == here ? part.b : part.a, .edge = part.edge});
+      continue;
+    }
+    walk.nodes.push_back(here);
+    if (stack.size() > 1) walk.edges.push_back(stack.back().edge);
+    stack.pop_back();
+  }
+  if (walk.edges.size() != parts.size()) return std::nullopt;
+  std::ranges::reverse(walk.nodes);
+  std::ranges::reverse(walk.edges);
+  for (const std::int64_t edge : walk.edges) {
+    walk.cost += edge == EdgeWalk::kResetEdge ? reset_cost : graph.edges[edge].cost;
+  }
+  return walk;
+}
+
+std::optional<EdgeWalk> directed_walk(const Multigraph& graph, const Graph& simple, NodeId start,
+                                      const PostmanOptions& options) {
+  const NodeId count = simple.node_count();
+  const double reset_cost = options.reset_cost.value_or(0);
+  const WholeCosts whole(simple, reset_cost);
+  const auto most = static_cast<std::int64_t>(graph.edges.size()) + 1;  // of any use of an edge
+  const int end = count;                                                // beyond the last node, where that is open
+  LeastCostFlow flow(count + 1);
+  struct Used {
+    LeastCostFlow::Arc arc;
+    Part part;
+  };
+  std::vector<Used> arcs;
+  const CheapestEdges cheapest(graph, simple);
+  for (NodeId node = 0; node < count; ++node) {
+    for (int i = 0; i < simple.degree(node); ++i) {
+      const NodeId next = simple.neighbours(node)[i];
+      arcs.push_back({.arc = flow.add(node, next, most, whole.of(simple.cost(node, i))),
+                      .part = {node, next, cheapest.edge(node, next)}});
+    }
+    if (options.reset_cost && node != start) {
+      arcs.push_back(
+          {.arc = flow.add(node, start, most, whole.of(reset_cost)), .part = {node, start, EdgeWalk::kResetEdge}});
+    }
+    if (!options.closed) flow.add(node, end, 1, 0);
+  }
+  std::vector<std::int64_t> surplus(count + 1, 0);  // arrivals less departures
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    const Edge& edge = graph.edges[i];
+    --surplus[edge.a];
+    ++surplus[edge.b];
+    parts.push_back({edge.a, edge.b, static_cast<std::int64_t>(i)});
+  }
+  if (!options.closed) {
+    ++surplus[start];
+    --surplus[end];
+  }
+  for (int node = 0; node <= count; ++node) flow.supply(node, surplus[node]);
+  if (!flow.run()) return std::nullopt;
+  for (const Used& used : arcs) parts.insert(parts.end(), flow.units(used.arc), used.part);
+  return eulerian_walk(graph, /*directed=*/true, count, start, parts, reset_cost);
+}
+
+std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& simple, NodeId start, bool closed) {
+  const NodeId count = simple.node_count();
+  std::vector<bool> odd(count);
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    const Edge& edge = graph.edges[i];
+    odd[edge.a] = !odd[edge.a];
+    odd[edge.b] = !odd[edge.b];
+    parts.push_back({edge.a, edge.b, static_cast<std::int64_t>(i)});
+  }
+  // An open walk is a closed one with an edge from its end to its start, which costs nothing.
+  if (!closed) odd[start] = !odd[start];
+  std::vector<NodeId> ends;
+  for (NodeId node = 0; node < count; ++node) {
+    if (odd[node]) ends.push_back(node);
+  }
+  const auto most = static_cast<std::size_t>(kMostOddNodes);
+  if (ends.size() > most) {
+    throw Error({.what = "too many nodes with an odd number of edges for the shortest walk over all edges",
+                 .expected = fmt::format("at most {}", most),
+                 .got = fmt::format("{}", ends.size())});
+  }
+  const std::size_t anywhere = ends.size();  // where an open walk ends, beside the odd nodes
+  const std::size_t all = ends.size() + (closed ? 0 : 1);
+
+  const WholeCosts whole(simple, 0);
+  std::vector<NearestFirst> searches(ends.size());
+  std::vector<std::vector<std::int64_t>> costs(all, std::vector<std::int64_t>(all, 0));
+  std::int64_t dearest = 0;
+  std::vector<std::size_t> place(count);
+  for (std::size_t i = 0; i < ends.size(); ++i) place[ends[i]] = i;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    std::size_t reached = 1;
+    searches[i].run(simple, ends[i], kNoLimit, [&](NodeId node, double cost) {
+      if (odd[node]) {
+        costs[i][place[node]] = whole.of(cost);
+        dearest = std::max(dearest, whole.of(cost));
+        ++reached;
+      }
+      return NearestFirst::Next::kThrough;
+    });
+    if (reached < ends.size()) return std::nullopt;
+  }
+  // The most weight with these weights is the most pairs, and of those the least cost. The library halves them.
+  using Weighted = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
+                                         boost::property<boost::edge_weight_t, std::int64_t>>;
+  Weighted pairs(all);
+  const std::int64_t pair_weight = (dearest + 1) * static_cast<std::int64_t>(all + 1);
+  for (std::size_t i = 0; i < all; ++i) {
+    for (std::size_t j = i + 1; j < all; ++j) {
+      boost::add_edge(i, j, Weighted::edge_property_type(4 * (pair_weight - costs[i][j])), pairs);
+    }
+  }
+  std::vector<boost::graph_traits<Weighted>::vertex_descriptor> mate(all);
+  boost::maximum_weighted_matching(pairs, mate.data());
+  const CheapestEdges cheapest(graph, simple);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (mate[i] >= all) return std::nullopt;
+    if (mate[i] == anywhere || mate[i] < i) continue;
+    std::vector<NodeId> way = {ends[i]};
+    searches[i].append_path_to(ends[mate[i]], way);
+    for (std::size_t step = 1; step < way.size(); ++step) {
+      parts.push_back({way[step - 1], way[step], cheapest.edge(way[step - 1], way[step])});
+    }
+  }
+  return eulerian_walk(graph, /*directed=*/false, count, start, parts, 0);
+}
+
+}  // namespace
+
+std::optional<EdgeWalk> postman_walk(const Multigraph& graph, EdgeKind kind, NodeId node_count, NodeId start,
+                                     const PostmanOptions& options) {
+  const Graph simple = Graph::from_edges(node_count, graph.edges, kind);
+  if (kind == EdgeKind::kDirected) return directed_walk(graph, simple, start, options);
+  if (options.reset_cost) {
+    throw Error({.what = "resets go with edges that lead one way", .expected = "a directed graph"});
+  }
+  return undirected_walk(graph, simple, start, options.closed);
+}
+
+}  // namespace graphdrl

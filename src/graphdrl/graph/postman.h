@@ -1,0 +1,37 @@
+// The cheapest walks over all edges of a graph.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "graphdrl/graph/graph_map.h"
+
+namespace graphdrl {
+
+// A walk as edges: their numbers in Multigraph::edges, or kResetEdge for a jump back to the start.
+struct EdgeWalk {
+  static constexpr std::int64_t kResetEdge = -1;
+
+  std::vector<NodeId> nodes;        // every position, the start first
+  std::vector<std::int64_t> edges;  // [steps]
+  double cost = 0;
+};
+
+struct PostmanOptions {
+  bool closed = false;                    // end at the start
+  std::optional<double> reset_cost = {};  // of a jump from anywhere to the start; empty: there is none
+};
+
+// The cheapest walk from a node over every edge, loops and parallel ones too; an undirected edge counts either way. The
+// edges of other components than the start's count as well: empty where no walk reaches them all.
+//
+// Directed: the Chinese postman by a flow of least cost [Edmonds and Johnson 1973]. Undirected: by a perfect matching
+// of the odd nodes, of least cost; resets are then one-way edges, which makes the problem hard, so there are none.
+// Cost: a search for each unit of flow; the cube of the odd nodes, of which kMostOddNodes are taken. Throws Error on
+// more, and on resets of undirected graphs.
+inline constexpr int kMostOddNodes = 500;
+std::optional<EdgeWalk> postman_walk(const Multigraph& graph, EdgeKind kind, NodeId node_count, NodeId start,
+                                     const PostmanOptions& options);
+
+}  // namespace graphdrl

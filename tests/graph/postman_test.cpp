@@ -1,0 +1,111 @@
+#include "graphdrl/graph/postman.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <queue>
+#include <set>
+#include <vector>
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/graph/search.h"
+#include "support.h"
+
+namespace graphdrl {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// The least cost of a walk over all edges, by Dijkstra's algorithm over positions and edges walked.
+double least_cost(const Multigraph& graph, bool directed, NodeId nodes, NodeId start, const PostmanOptions& options) {
+  const auto all = (1U << graph.edges.size()) - 1;
+  std::vector<std::vector<double>> best(nodes, std::vector<double>(all + 1, kNoLimit));
+  using Entry = std::tuple<double, NodeId, unsigned>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> heap;
+  const auto reach = [&](NodeId node, unsigned walked, double cost) {
+    if (cost >= best[node][walked]) return;
+    best[node][walked] = cost;
+    heap.emplace(cost, node, walked);
+  };
+  reach(start, 0, 0);
+  while (!heap.empty()) {
+    const auto [cost, node, walked] = heap.top();
+    heap.pop();
+    if (cost > best[node][walked]) continue;
+    if (walked == all && (!options.closed || node == start)) return cost;
+    for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+      const Edge& edge = graph.edges[i];
+      if (edge.a == node) reach(edge.b, walked | 1U << i, cost + edge.cost);
+      if (edge.b == node && !directed) reach(edge.a, walked | 1U << i, cost + edge.cost);
+    }
+    if (options.reset_cost) reach(start, walked, cost + *options.reset_cost);
+  }
+  return kNoLimit;
+}
+
+// Checks that it is a walk over all edges, and gives its cost.
+double checked_cost(const EdgeWalk& walk, const Multigraph& graph, bool directed, NodeId start,
+                    const PostmanOptions& options) {
+  EXPECT_EQ(walk.nodes.size(), walk.edges.size() + 1);
+  EXPECT_EQ(walk.nodes.front(), start);
+  EXPECT_EQ(options.closed ? walk.nodes.back() : start, start);
+  std::set<std::int64_t> walked;
+  double cost = 0;
+  for (std::size_t i = 0; i < walk.edges.size(); ++i) {
+    const NodeId from = walk.nodes[i];
+    const NodeId to = walk.nodes[i + 1];
+    if (walk.edges[i] == EdgeWalk::kResetEdge) {
+      EXPECT_EQ(to, start);
+      cost += options.reset_cost.value_or(kNoLimit);
+      continue;
+    }
+    const Edge& edge = graph.edges[walk.edges[i]];
+    EXPECT_TRUE((edge.a == from && edge.b == to) || (!directed && edge.b == from && edge.a == to));
+    walked.insert(walk.edges[i]);
+    cost += edge.cost;
+  }
+  EXPECT_EQ(walked.size(), graph.edges.size());
+  return cost;
+}
+
+TEST(Postman, WalksAsShortAsAnyWalkOverAllEdges) {
+  Rng rng(11);
+  int found = 0;
+  for (int round = 0; round < 600; ++round) {
+    const bool directed = round % 2 == 0;
+    const NodeId nodes = 2 + rng.index(4);
+    Multigraph graph;
+    const int edges = 1 + rng.index(8);
+    const double unit = round % 3 == 0 ? 0.3 : 1;
+    for (int i = 0; i < edges; ++i) {
+      graph.edges.push_back({rng.index(nodes), rng.index(nodes), unit * (1 + rng.index(4))});
+    }
+    PostmanOptions options{.closed = rng.index(2) == 0};
+    if (directed && rng.index(2) == 0) options.reset_cost = rng.index(4);
+    const EdgeKind kind = directed ? EdgeKind::kDirected : EdgeKind::kUndirected;
+    const NodeId start = rng.index(nodes);
+    const double least = least_cost(graph, directed, nodes, start, options);
+    const auto walk = postman_walk(graph, kind, nodes, start, options);
+    ASSERT_EQ(walk.has_value(), least < kNoLimit) << round;
+    if (!walk) continue;
+    ++found;
+    EXPECT_NEAR(checked_cost(*walk, graph, directed, start, options), least, 1e-6) << round;
+    EXPECT_NEAR(walk->cost, least, 1e-6);
+  }
+  EXPECT_GT(found, 200);
+}
+
+TEST(Postman, WalksAPathThereAndBack) {
+  const Multigraph path{.edges = {{0, 1}, {1, 2}}};
+  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {.closed = true})->nodes, ElementsAre(0, 1, 2, 1, 0));
+  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {})->nodes, ElementsAre(0, 1, 2));
+  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 1, {})->nodes.size(), 4);
+  EXPECT_FALSE(postman_walk(path, EdgeKind::kDirected, 3, 1, {}));
+  EXPECT_EQ(postman_walk(path, EdgeKind::kDirected, 3, 0, {.closed = true, .reset_cost = 5})->cost, 7);
+  EXPECT_THAT(error_of([&] { postman_walk(path, EdgeKind::kUndirected, 3, 0, {.reset_cost = 1}); }),
+              HasSubstr("one way"));
+}
+
+}  // namespace
+}  // namespace graphdrl
