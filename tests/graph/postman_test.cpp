@@ -33,7 +33,7 @@ double least_cost(const Multigraph& graph, bool directed, NodeId nodes, NodeId s
     const auto [cost, node, walked] = heap.top();
     heap.pop();
     if (cost > best[node][walked]) continue;
-    if (walked == all && (!options.closed || node == start)) return cost;
+    if (walked == all && (options.end == kNoNode || node == options.end)) return cost;
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
       const Edge& edge = graph.edges[i];
       if (edge.a == node) reach(edge.b, walked | 1U << i, cost + edge.cost);
@@ -49,7 +49,7 @@ double checked_cost(const EdgeWalk& walk, const Multigraph& graph, bool directed
                     const PostmanOptions& options) {
   EXPECT_EQ(walk.nodes.size(), walk.edges.size() + 1);
   EXPECT_EQ(walk.nodes.front(), start);
-  EXPECT_EQ(options.closed ? walk.nodes.back() : start, start);
+  EXPECT_TRUE(options.end == kNoNode || walk.nodes.back() == options.end);
   std::set<std::int64_t> walked;
   double cost = 0;
   for (std::size_t i = 0; i < walk.edges.size(); ++i) {
@@ -81,7 +81,8 @@ TEST(Postman, WalksAsShortAsAnyWalkOverAllEdges) {
     for (int i = 0; i < edges; ++i) {
       graph.edges.push_back({rng.index(nodes), rng.index(nodes), unit * (1 + rng.index(4))});
     }
-    PostmanOptions options{.closed = rng.index(2) == 0};
+    PostmanOptions options;
+    if (rng.index(3) > 0) options.end = rng.index(nodes);
     if (directed && rng.index(2) == 0) options.reset_cost = rng.index(4);
     const EdgeKind kind = directed ? EdgeKind::kDirected : EdgeKind::kUndirected;
     const NodeId start = rng.index(nodes);
@@ -98,11 +99,11 @@ TEST(Postman, WalksAsShortAsAnyWalkOverAllEdges) {
 
 TEST(Postman, WalksAPathThereAndBack) {
   const Multigraph path{.edges = {{0, 1}, {1, 2}}};
-  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {.closed = true})->nodes, ElementsAre(0, 1, 2, 1, 0));
+  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {.end = 0})->nodes, ElementsAre(0, 1, 2, 1, 0));
   EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {})->nodes, ElementsAre(0, 1, 2));
   EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 1, {})->nodes.size(), 4);
   EXPECT_FALSE(postman_walk(path, EdgeKind::kDirected, 3, 1, {}));
-  EXPECT_EQ(postman_walk(path, EdgeKind::kDirected, 3, 0, {.closed = true, .reset_cost = 5})->cost, 7);
+  EXPECT_EQ(postman_walk(path, EdgeKind::kDirected, 3, 0, {.end = 0, .reset_cost = 5})->cost, 7);
   EXPECT_THAT(error_of([&] { postman_walk(path, EdgeKind::kUndirected, 3, 0, {.reset_cost = 1}); }),
               HasSubstr("one way"));
 }

@@ -94,12 +94,88 @@ Chosen choose(const PlanRequest& request, const World& world, std::string& label
   return made;
 }
 
+// The world with the resets of a walk as edges.
+World with_resets(const World& world, const EdgeWalk& walk, double reset_cost) {
+  std::vector<Edge> edges = world.graph().edges();
+  const std::size_t before = edges.size();
+  for (std::size_t i = 0; i < walk.edges.size(); ++i) {
+    if (walk.edges[i] == EdgeWalk::kResetEdge) edges.push_back({walk.nodes[i], walk.nodes[i + 1], reset_cost});
+  }
+  if (edges.size() == before) return world;
+  GraphMap map = world.to_map();
+  map.graph = Graph::from_edges(world.node_count(), edges, EdgeKind::kDirected);
+  return World(world.name(), std::move(map));
+}
+
+Answer plan_edges(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
+  if (!request.reveal.all() || request.own_policy) {
+    throw Error({.what = "edges are covered on maps that are known, by planners"});
+  }
+  const Stopwatch watch;
+  PlanRequest nodes = request;
+  nodes.cover = Cover::kNodes;
+  nodes.reset_cost.reset();
+  std::string policy;
+  EdgeCover cover = cover_edges(world, task, request.reset_cost, [&](const World& halved, const Task& halved_task) {
+    Answer made = make_plan(halved, halved_task, nodes, clock.share(kPlanShare));
+    policy = made.policy;
+    return std::move(made.plan);
+  });
+  if (!cover.policy.empty()) policy = cover.policy;
+  if (policy.empty()) policy = "nearest";
+  Answer answer{.world = with_resets(world, cover.walk, request.reset_cost.value_or(0)),
+                .task = task,
+                .policy = policy,
+                .plan = {},
+                .until_covered = !task.has_budget()};
+  std::vector<bool> visited(world.node_count());
+  for (const NodeId node : cover.walk.nodes) {
+    if (answer.plan.walk.empty() || answer.plan.walk.back() != node) answer.plan.walk.push_back(node);
+    if (visited[node]) continue;
+    visited[node] = true;
+    ++answer.plan.visited;
+    answer.plan.prize += world.prize(node);
+  }
+  answer.plan.cost = cover.walk.cost;
+  answer.edges = std::move(cover);
+  answer.unreachable = count_unreachable(world, task.start());
+  answer.elapsed_s = watch.seconds();
+  return answer;
+}
+
+std::vector<std::string> edge_summary(const Answer& answer) {
+  const EdgeCover& edges = *answer.edges;
+  const auto resets = std::ranges::count(edges.walk.edges, EdgeWalk::kResetEdge);
+  std::string first =
+      fmt::format("walked {} of {} edges, {:.1f} %, for {}{}", edges.walked, edges.edges,
+                  edges.percent(static_cast<double>(edges.walked)), decimal(edges.walk.cost),
+                  answer.until_covered ? "" : fmt::format(" of a budget of {}", decimal(answer.task.budget())));
+  if (resets > 0) first += fmt::format(", {} reset{} among it", resets, resets == 1 ? "" : "s");
+  std::vector<std::string> lines = {std::move(first)};
+  if (edges.all_cheapest) {
+    lines.emplace_back("optimal: no walk over all edges is cheaper");
+  } else if (static_cast<double>(edges.walked) >= edges.bound) {
+    lines.emplace_back("optimal: no walk has more edges");
+  } else {
+    lines.push_back(fmt::format("no walk has more than {} edges, {:.1f} %: the gap is {:.1f} points",
+                                decimal(edges.bound), edges.percent(edges.bound),
+                                edges.percent(edges.bound - static_cast<double>(edges.walked))));
+  }
+  if (answer.unreachable > 0) {
+    lines.push_back(fmt::format("{} node{} cannot be reached from the start", answer.unreachable,
+                                answer.unreachable == 1 ? "" : "s"));
+  }
+  return lines;
+}
+
 }  // namespace
 
 Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
   if (request.price_s && (request.reveal.all() || request.score == Score::kSeen)) {
     throw Error({.what = "the price of ignorance is that of nodes visited on maps that are not known"});
   }
+  if (request.cover == Cover::kEdges) return plan_edges(world, task, request, clock);
+  if (request.reset_cost) throw Error({.what = "resets go with --cover edges"});
   const Stopwatch watch;
   const Clock bound_clock = clock.share(kBoundShare);
   const Clock plan_clock = clock.share(kPlanShare);
@@ -156,6 +232,7 @@ void judge(Answer& answer) {
 }
 
 std::vector<std::string> plan_summary(const Answer& answer) {
+  if (answer.edges) return edge_summary(answer);
   const World& world = answer.world;
   const Plan& plan = answer.plan;
   std::string length;

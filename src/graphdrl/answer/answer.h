@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/answer/edge_cover.h"
 #include "graphdrl/eval/rollout.h"
 #include "graphdrl/planners/registry.h"
 
@@ -27,6 +28,9 @@ struct Answer {
   Discovered discovered = {};      // … and how it became known
   std::optional<Plan> known = {};  // by a walk that knows the map, where that was asked for
   bool until_covered = false;      // costs tell walks apart, not what they visit
+  // Where edges count; the plan's walk then leaves out loops, and its prize and bound are those of nodes. The world has
+  // the resets that were made as edges.
+  std::optional<EdgeCover> edges = {};
 
   // What it costs not to know the map [eval/comparison.h]; empty where that was not asked for, or where costs are to be
   // compared of walks that visit different nodes.
@@ -49,6 +53,8 @@ struct PlanRequest {
   std::optional<std::int64_t> iterations = {};  // of `search`, instead of those in its name
   Reveal reveal = {};                           // unless all is known, the policy explores instead of planning
   Score score = Score::kVisited;
+  Cover cover = Cover::kNodes;                       // edges: of known maps
+  std::optional<double> reset_cost = {};             // where edges count, of a directed graph: of a jump to the start
   std::shared_ptr<const BelievedMap> believed = {};  // an old map, by which the policy plans; null without one
   bool until_covered = false;                        // the task has no budget
   double think_s = kNoLimit;                         // of an exploration, for a choice

@@ -33,6 +33,8 @@ struct PlanOptions {
   std::string reveal = "all";
   std::string score = "visited";
   std::string until;
+  std::string cover = "nodes";
+  std::optional<double> reset_cost;
   std::string believed;
   std::optional<double> think_time_s;
   std::vector<std::string> out;
@@ -61,7 +63,8 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
   if (!answer.task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, answer.task.end()));
   for (const std::string& line : plan_summary(answer)) text += '\n' + line;
   text += '\n';
-  const std::string length = fmt::format("walk of {} steps", walk.size() - 1);
+  const std::string length =
+      fmt::format("walk of {} steps", answer.edges ? answer.edges->walk.edges.size() : walk.size() - 1);
   if (options.walk) return as_comments(text + length + '\n') + format_walk(world, walk);
   Screen screen = screen_of(stdout);
   if (!world.has_cells() && std::ssize(walk) <= screen.columns) {
@@ -83,12 +86,21 @@ void plan(const PlanOptions& options) {
   const World world = load_one_world(options.map, options.reading);
   Asked asked = asked_of(world, options.asked);
   const bool until_covered = !options.until.empty();
-  if (until_covered) asked.budget = Budget(kNoLimit);
+  const bool edges = parse_cover(options.cover) == Cover::kEdges;
+  if (edges && !options.asked.budget.empty() && options.asked.budget.back() == 'x') {
+    throw Error({.what = "a multiple is of nodes, and edges count here",
+                 .expected = "a budget in units of cost, or none",
+                 .got = in_quotes(options.asked.budget),
+                 .where = "--budget"});
+  }
+  if (until_covered || (edges && !asked.budget && !world.given().budget)) asked.budget = Budget(kNoLimit);
   const Task task(world, asked);
   PlanRequest request = options.request;
   request.reveal = Reveal::parse(options.reveal);
   request.score = parse_score(options.score);
   request.until_covered = until_covered;
+  if (edges) request.cover = Cover::kEdges;
+  request.reset_cost = options.reset_cost;
   if (!options.believed.empty()) {
     request.believed = believe(load_one_world(options.believed, options.reading), world);
   }
@@ -153,6 +165,17 @@ void add_plan_command(CLI::App& app) {
   add_shared_options(command, *options);
   options->request.policy = kPlanPolicy;
   command.add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
+  command
+      .add_option("--cover", options->cover,
+                  "What counts: nodes, or edges, loops and parallel ones too; without a budget the cheapest walk over "
+                  "all edges")
+      ->check(CLI::IsMember({"nodes", "edges"}))
+      ->capture_default_str();
+  command
+      .add_option("--reset-cost", options->reset_cost,
+                  "Of --cover edges where edges lead one way: what it costs to jump back to the start")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("C");
   command
       .add_option("--iterations", options->request.iterations,
                   "Of search: how many steps to take in all; the default depends on the size of the world")

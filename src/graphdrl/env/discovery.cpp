@@ -96,6 +96,12 @@ Score parse_score(std::string_view text) {
   throw Error({.what = "bad score", .expected = "visited or seen", .got = in_quotes(text)});
 }
 
+Cover parse_cover(std::string_view text) {
+  if (text == "nodes") return Cover::kNodes;
+  if (text == "edges") return Cover::kEdges;
+  throw Error({.what = "bad cover", .expected = "nodes or edges", .got = in_quotes(text)});
+}
+
 std::shared_ptr<const BelievedMap> believe(const World& old, const World& world) {
   const auto refuse = [&](const std::string& expected) {
     throw Error({.what = "the believed map is of another kind", .expected = expected, .where = old.name()});

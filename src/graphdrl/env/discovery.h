@@ -48,6 +48,15 @@ enum class Score {
 // "visited" or "seen". Throws Error on anything else.
 Score parse_score(std::string_view text);
 
+// What is worth something the first time.
+enum class Cover {
+  kNodes,  // a node's visit
+  kEdges,  // an edge walked whole: a transition of a state machine
+};
+
+// "nodes" or "edges". Throws Error on anything else.
+Cover parse_cover(std::string_view text);
+
 // An old map of a world, which may have changed since.
 struct BelievedMap {
   World world;

@@ -160,7 +160,7 @@ std::optional<EdgeWalk> directed_walk(const Multigraph& graph, const Graph& simp
   const double reset_cost = options.reset_cost.value_or(0);
   const WholeCosts whole(simple, reset_cost);
   const auto most = static_cast<std::int64_t>(graph.edges.size()) + 1;  // of any use of an edge
-  const int end = count;                                                // beyond the last node, where that is open
+  const int end = options.end == kNoNode ? count : options.end;         // anywhere: a node beyond all others
   LeastCostFlow flow(count + 1);
   struct Used {
     LeastCostFlow::Arc arc;
@@ -178,7 +178,7 @@ std::optional<EdgeWalk> directed_walk(const Multigraph& graph, const Graph& simp
       arcs.push_back(
           {.arc = flow.add(node, start, most, whole.of(reset_cost)), .part = {node, start, EdgeWalk::kResetEdge}});
     }
-    if (!options.closed) flow.add(node, end, 1, 0);
+    if (options.end == kNoNode) flow.add(node, end, 1, 0);
   }
   std::vector<std::int64_t> surplus(count + 1, 0);  // arrivals less departures
   std::vector<Part> parts;
@@ -188,17 +188,15 @@ std::optional<EdgeWalk> directed_walk(const Multigraph& graph, const Graph& simp
     ++surplus[edge.b];
     parts.push_back({edge.a, edge.b, static_cast<std::int64_t>(i)});
   }
-  if (!options.closed) {
-    ++surplus[start];
-    --surplus[end];
-  }
+  ++surplus[start];
+  --surplus[end];
   for (int node = 0; node <= count; ++node) flow.supply(node, surplus[node]);
   if (!flow.run()) return std::nullopt;
   for (const Used& used : arcs) parts.insert(parts.end(), flow.units(used.arc), used.part);
   return eulerian_walk(graph, /*directed=*/true, count, start, parts, reset_cost);
 }
 
-std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& simple, NodeId start, bool closed) {
+std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& simple, NodeId start, NodeId end) {
   const NodeId count = simple.node_count();
   std::vector<bool> odd(count);
   std::vector<Part> parts;
@@ -209,7 +207,8 @@ std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& si
     parts.push_back({edge.a, edge.b, static_cast<std::int64_t>(i)});
   }
   // An open walk is a closed one with an edge from its end to its start, which costs nothing.
-  if (!closed) odd[start] = !odd[start];
+  odd[start] = !odd[start];
+  if (end != kNoNode) odd[end] = !odd[end];
   std::vector<NodeId> ends;
   for (NodeId node = 0; node < count; ++node) {
     if (odd[node]) ends.push_back(node);
@@ -221,7 +220,7 @@ std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& si
                  .got = fmt::format("{}", ends.size())});
   }
   const std::size_t anywhere = ends.size();  // where an open walk ends, beside the odd nodes
-  const std::size_t all = ends.size() + (closed ? 0 : 1);
+  const std::size_t all = ends.size() + (end == kNoNode ? 1 : 0);
 
   const WholeCosts whole(simple, 0);
   std::vector<NearestFirst> searches(ends.size());
@@ -275,7 +274,7 @@ std::optional<EdgeWalk> postman_walk(const Multigraph& graph, EdgeKind kind, Nod
   if (options.reset_cost) {
     throw Error({.what = "resets go with edges that lead one way", .expected = "a directed graph"});
   }
-  return undirected_walk(graph, simple, start, options.closed);
+  return undirected_walk(graph, simple, start, options.end);
 }
 
 }  // namespace graphdrl

@@ -13,13 +13,13 @@ namespace graphdrl {
 struct EdgeWalk {
   static constexpr std::int64_t kResetEdge = -1;
 
-  std::vector<NodeId> nodes;        // every position, the start first
-  std::vector<std::int64_t> edges;  // [steps]
+  std::vector<NodeId> nodes;             // every position, the start first
+  std::vector<std::int64_t> edges = {};  // [steps]
   double cost = 0;
 };
 
 struct PostmanOptions {
-  bool closed = false;                    // end at the start
+  NodeId end = kNoNode;                   // where it must end; kNoNode: anywhere
   std::optional<double> reset_cost = {};  // of a jump from anywhere to the start; empty: there is none
 };
 

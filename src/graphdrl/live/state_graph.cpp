@@ -4,8 +4,6 @@
 #include <functional>
 #include <utility>
 
-#include "graphdrl/base/error.h"
-
 namespace graphdrl {
 namespace {
 
@@ -25,12 +23,6 @@ std::size_t hash_of(const std::vector<OfferedMove>& moves) {
 }
 
 }  // namespace
-
-Cover parse_cover(std::string_view text) {
-  if (text == "nodes") return Cover::kNodes;
-  if (text == "edges") return Cover::kEdges;
-  throw Error({.what = "bad cover", .expected = "nodes or edges", .got = in_quotes(text)});
-}
 
 StateGraph::StateGraph(Cover cover, std::optional<double> reset_cost, bool way_home)
     : cover_(cover), reset_cost_(reset_cost), way_home_(way_home), discovery_("live", EdgeKind::kDirected) {}

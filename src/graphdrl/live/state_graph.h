@@ -12,12 +12,6 @@
 
 namespace graphdrl {
 
-// What a first time is worth something: of a state, or of every move of it, a transition.
-enum class Cover { kNodes, kEdges };
-
-// "nodes" or "edges". Throws Error on anything else.
-Cover parse_cover(std::string_view text);
-
 // A move as a client offers it.
 struct OfferedMove {
   std::string name;

@@ -179,6 +179,32 @@ std::string format_walk(const World& world, std::span<const NodeId> walk) {
   return text;
 }
 
+namespace {
+
+// What a walk over edges has beside its nodes.
+void add_edges(const Answer& answer, nlohmann::ordered_json& json) {
+  const EdgeCover& edges = *answer.edges;
+  const Multigraph* const all = answer.world.multigraph();
+  const bool labelled = all != nullptr && !all->labels.empty();
+  json["cover"] = "edges";
+  Json& numbers = json["walk_edges"] = Json::array();
+  Json labels = Json::array();
+  for (const std::int64_t edge : edges.walk.edges) {
+    const bool reset = edge == EdgeWalk::kResetEdge;
+    numbers.push_back(reset ? Json() : Json(edge));
+    labels.push_back(reset || !labelled ? Json() : Json(all->labels[static_cast<std::size_t>(edge)]));
+  }
+  if (labelled) json["walk_edge_labels"] = std::move(labels);
+  json["edges_walked"] = edges.walked;
+  json["edges"] = edges.edges;
+  json["upper_bound"] = edges.percent(edges.bound);
+  json["max_edges"] = static_cast<std::int64_t>(edges.bound);
+  json["gap"] = edges.percent(edges.bound - static_cast<double>(edges.walked));
+  json["optimal"] = edges.all_cheapest || static_cast<double>(edges.walked) >= edges.bound;
+}
+
+}  // namespace
+
 std::vector<double> costs_so_far(const Answer& answer) {
   const Graph& open = answer.world.open();
   std::vector<double> costs = {0};
@@ -199,10 +225,11 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
   json["start"] = plan.walk.front();
   json["end"] = answer.task.ends_anywhere() ? Json() : Json(answer.task.end());
   json["budget"] = answer.task.budget();
-  json["walk"] = plan.walk;
+  const std::vector<NodeId>& walk = answer.edges ? answer.edges->walk.nodes : plan.walk;
+  json["walk"] = walk;
   const auto add_steps = [&](const char* key, const auto& value_at) {
     Json& values = json[key] = Json::array();
-    for (const NodeId node : plan.walk) values.push_back(value_at(node));
+    for (const NodeId node : walk) values.push_back(value_at(node));
   };
   if (world.has_cells()) {
     add_steps("walk_cells", [&](NodeId node) {
@@ -231,6 +258,12 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
     json["known"] = {{"visited", answer.known->visited}, {"prize", answer.known->prize}, {"cost", answer.known->cost}};
     const auto price = answer.price_of_ignorance();
     json["price_of_ignorance"] = price ? Json(*price) : Json();
+  }
+  if (answer.edges) {
+    add_edges(answer, json);
+    json["unreachable"] = answer.unreachable;
+    json["elapsed_s"] = answer.elapsed_s;
+    return json;
   }
   json["upper_bound"] = world.percent_of_all(plan.bound);
   if (world.has_prizes()) {

@@ -1,0 +1,310 @@
+#include "graphdrl/answer/edge_cover.h"
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+#include <queue>
+#include <tuple>
+#include <utility>
+
+#include "graphdrl/base/random.h"
+#include "graphdrl/graph/search.h"
+
+namespace graphdrl {
+namespace {
+
+constexpr std::int64_t kExactStates = 4'000'000;
+
+// Of undirected graphs: greedy walks by distances with noise, the best of which counts.
+constexpr double kNoise = 1.5;
+constexpr std::int64_t kNoisyWork = 20'000'000;  // edges looked at, about
+constexpr std::int64_t kMostNoisyTries = 2000;
+constexpr std::uint64_t kNoiseSeed = 1;
+
+// One budgeted search for a walk over edges, by their places in the list of walkable ones.
+class EdgePlanner {
+ public:
+  EdgePlanner(const World& world, const Task& task, const Multigraph& graph, std::optional<double> reset_cost)
+      : world_(world),
+        task_(task),
+        graph_(graph),
+        reset_cost_(reset_cost),
+        directed_(world.open().directed()),
+        limit_(task.limit()),
+        leaving_(world.node_count()) {
+    for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+      const Edge& edge = graph.edges[i];
+      leaving_[edge.a].push_back(static_cast<std::int64_t>(i));
+      if (!directed_ && edge.a != edge.b) leaving_[edge.b].push_back(static_cast<std::int64_t>(i));
+    }
+  }
+
+  // By all positions and sets of edges walked [Dijkstra]. Empty where there are too many.
+  std::optional<EdgeWalk> exact() const {
+    const auto edges = static_cast<std::int64_t>(graph_.edges.size());
+    const std::int64_t nodes = world_.node_count();
+    if (edges > kExactEdges || (nodes << edges) > kExactStates) return std::nullopt;
+    struct State {
+      double cost = kNoLimit;
+      std::int64_t from = -1;  // the state before, and the edge between
+      std::int64_t edge = EdgeWalk::kResetEdge;
+    };
+    std::vector<State> states(static_cast<std::size_t>(nodes << edges));
+    using Entry = std::pair<double, std::int64_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> heap;
+    const auto reach = [&](std::int64_t state, double cost, std::int64_t from, std::int64_t edge) {
+      const NodeId node = static_cast<NodeId>(state >> edges);
+      if (cost + cost_to_end(node) > limit_ || cost >= states[state].cost) return;
+      states[state] = {.cost = cost, .from = from, .edge = edge};
+      heap.emplace(cost, state);
+    };
+    const std::int64_t all = (std::int64_t{1} << edges) - 1;
+    reach(std::int64_t{task_.start()} << edges, 0, -1, EdgeWalk::kResetEdge);
+    std::int64_t best = -1;
+    std::tuple<int, double> best_rank = {-1, 0};
+    while (!heap.empty()) {
+      const auto [cost, state] = heap.top();
+      heap.pop();
+      if (cost > states[state].cost) continue;
+      const NodeId node = static_cast<NodeId>(state >> edges);
+      const std::int64_t walked = state & all;
+      if (task_.ends_anywhere() || node == task_.end()) {
+        const std::tuple rank{std::popcount(static_cast<std::uint64_t>(walked)), -cost};
+        if (rank > best_rank) std::tie(best, best_rank) = std::tuple(state, rank);
+      }
+      for (const std::int64_t edge : leaving_[node]) {
+        const NodeId next = other_end(edge, node);
+        reach(std::int64_t{next} << edges | walked | std::int64_t{1} << edge, cost + graph_.edges[edge].cost, state,
+              edge);
+      }
+      if (reset_cost_)
+        reach(std::int64_t{task_.start()} << edges | walked, cost + *reset_cost_, state, EdgeWalk::kResetEdge);
+    }
+    if (best < 0) return std::nullopt;
+    EdgeWalk walk;
+    for (std::int64_t state = best; state >= 0; state = states[state].from) {
+      walk.nodes.push_back(static_cast<NodeId>(state >> edges));
+      if (states[state].from >= 0) walk.edges.push_back(states[state].edge);
+    }
+    std::ranges::reverse(walk.nodes);
+    std::ranges::reverse(walk.edges);
+    walk.cost = states[best].cost;
+    return walk;
+  }
+
+  // A walk that begins with these edges, as far as the budget goes, and goes on to the nearest edge left; then to the
+  // end. noise: by how much of themselves distances may seem longer.
+  EdgeWalk greedy(const std::vector<std::int64_t>& first, double noise, Rng& rng) const {
+    EdgeWalk walk{.nodes = {task_.start()}};
+    std::vector<bool> walked(graph_.edges.size());
+    const auto take = [&](std::int64_t edge, NodeId next, double cost) {
+      walk.edges.push_back(edge);
+      walk.nodes.push_back(next);
+      walk.cost += cost;
+      if (edge >= 0) walked[edge] = true;
+    };
+    for (const std::int64_t edge : first) {
+      const NodeId here = walk.nodes.back();
+      const NodeId next = edge < 0 ? task_.start() : other_end(edge, here);
+      const double cost = edge < 0 ? reset_cost_.value_or(kNoLimit) : graph_.edges[edge].cost;
+      if (walk.cost + cost + cost_to_end(next) > limit_) break;
+      take(edge, next, cost);
+    }
+    NearestFirst search;
+    const Graph& open = world_.open();
+    // The cheapest way to a node, over its cheapest edges.
+    const auto go_to = [&](NodeId goal) {
+      std::vector<NodeId> way;
+      search.append_path_to(goal, way);
+      for (const NodeId next : way) {
+        const std::int64_t edge = cheapest_between(walk.nodes.back(), next);
+        take(edge, next, graph_.edges[edge].cost);
+      }
+    };
+    while (true) {
+      const NodeId here = walk.nodes.back();
+      std::int64_t next_edge = -1;
+      NodeId at = kNoNode;
+      double least = kNoLimit;
+      const auto look_at = [&](NodeId node, double cost) {
+        for (const std::int64_t edge : leaving_[node]) {
+          const double whole = cost + graph_.edges[edge].cost;
+          if (walked[edge] || walk.cost + whole + cost_to_end(other_end(edge, node)) > limit_) continue;
+          const double seeming = noise == 0 ? cost : whole * (1 + noise * rng.uniform());
+          if (seeming >= least) continue;
+          least = seeming;
+          next_edge = edge;
+          at = node;
+        }
+        return cost >= least ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+      };
+      if (look_at(here, 0) == NearestFirst::Next::kThrough) search.run(open, here, limit_ - walk.cost, look_at);
+      if (next_edge < 0) break;
+      if (at != here) go_to(at);
+      take(next_edge, other_end(next_edge, at), graph_.edges[next_edge].cost);
+    }
+    if (reset_cost_ && cost_to_end(walk.nodes.back()) < task_.cost_to_end(walk.nodes.back())) {
+      take(EdgeWalk::kResetEdge, task_.start(), *reset_cost_);
+    }
+    if (!task_.ends_anywhere() && walk.nodes.back() != task_.end()) {
+      search.run(open, walk.nodes.back(), kNoLimit, [&](NodeId node, double) {
+        return node == task_.end() ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+      });
+      go_to(task_.end());
+    }
+    return walk;
+  }
+
+  // A node in the middle of each edge, worth 1; other nodes are worth nothing. REQUIRES: directed.
+  EdgeWalk planned(const std::function<Plan(const World&, const Task&)>& plan_nodes) const {
+    const NodeId nodes = world_.node_count();
+    const auto middle = [&](std::size_t edge) { return nodes + static_cast<NodeId>(edge); };
+    GraphMap map;
+    std::vector<Edge> halves;
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
+      halves.push_back({graph_.edges[i].a, middle(i), graph_.edges[i].cost});
+      halves.push_back({middle(i), graph_.edges[i].b, 0});
+    }
+    if (reset_cost_) {
+      for (NodeId node = 0; node < nodes; ++node) {
+        if (node != task_.start()) halves.push_back({node, task_.start(), *reset_cost_});
+      }
+    }
+    map.graph = Graph::from_edges(middle(graph_.edges.size()), halves, EdgeKind::kDirected);
+    map.blocked = world_.blocked();
+    map.blocked.resize(map.graph.node_count());
+    map.prizes.assign(map.graph.node_count(), 1);
+    std::fill_n(map.prizes.begin(), nodes, 0);
+    const World halved(world_.name(), std::move(map));
+    const End end = task_.ends_anywhere() ? End::anywhere() : End::at(task_.end());
+    const Plan plan = plan_nodes(halved, Task(halved, task_.start(), task_.budget(), end));
+    EdgeWalk walk{.nodes = {task_.start()}};
+    for (std::size_t i = 1; i < plan.walk.size(); ++i) {
+      const NodeId node = plan.walk[i];
+      if (node >= nodes) {
+        const std::int64_t edge = node - nodes;
+        walk.edges.push_back(edge);
+        walk.nodes.push_back(graph_.edges[edge].b);
+        walk.cost += graph_.edges[edge].cost;
+      } else if (plan.walk[i - 1] < nodes) {
+        walk.edges.push_back(EdgeWalk::kResetEdge);
+        walk.nodes.push_back(node);
+        walk.cost += *reset_cost_;
+      }
+    }
+    planned_bound_ = plan.optimal ? plan.prize : plan.bound;
+    return walk;
+  }
+  double planned_bound() const { return planned_bound_; }  // after planned()
+
+  // As many of the cheapest edges that can be reached as the budget pays for.
+  double bound() const {
+    std::vector<double> costs;
+    std::vector<double> to(world_.node_count(), kNoLimit);
+    to[task_.start()] = 0;
+    NearestFirst().run(world_.open(), task_.start(), limit_, [&](NodeId node, double cost) {
+      to[node] = cost;
+      return NearestFirst::Next::kThrough;
+    });
+    for (const auto& [a, b, cost] : graph_.edges) {
+      double least = to[a] + cost + cost_to_end(b);
+      if (!directed_) least = std::min(least, to[b] + cost + cost_to_end(a));
+      if (least <= limit_) costs.push_back(cost);
+    }
+    std::ranges::sort(costs);
+    double sum = 0;
+    std::size_t count = 0;
+    while (count < costs.size() && sum + costs[count] <= limit_) sum += costs[count++];
+    return static_cast<double>(count);
+  }
+
+  std::int64_t different(const EdgeWalk& walk) const {
+    std::vector<bool> walked(graph_.edges.size());
+    for (const std::int64_t edge : walk.edges) {
+      if (edge >= 0) walked[edge] = true;
+    }
+    return std::ranges::count(walked, true);
+  }
+
+ private:
+  double cost_to_end(NodeId node) const {
+    const double cost = task_.cost_to_end(node);
+    if (!reset_cost_ || task_.ends_anywhere()) return cost;
+    return std::min(cost, *reset_cost_ + task_.cost_to_end(task_.start()));
+  }
+  NodeId other_end(std::int64_t edge, NodeId node) const {
+    return graph_.edges[edge].a == node ? graph_.edges[edge].b : graph_.edges[edge].a;
+  }
+  std::int64_t cheapest_between(NodeId from, NodeId to) const {
+    std::int64_t best = -1;
+    for (const std::int64_t edge : leaving_[from]) {
+      if (other_end(edge, from) != to) continue;
+      if (best < 0 || graph_.edges[edge].cost < graph_.edges[best].cost) best = edge;
+    }
+    return best;
+  }
+
+  const World& world_;
+  const Task& task_;
+  const Multigraph& graph_;
+  std::optional<double> reset_cost_;
+  bool directed_;
+  double limit_;
+  std::vector<std::vector<std::int64_t>> leaving_;  // [N], edges that lead on from a node
+  mutable double planned_bound_ = kNoLimit;
+};
+
+}  // namespace
+
+WalkableEdges walkable_edges(const World& world) {
+  const Multigraph all =
+      world.multigraph() != nullptr ? *world.multigraph() : Multigraph{.edges = world.graph().edges()};
+  WalkableEdges walkable;
+  for (std::size_t i = 0; i < all.edges.size(); ++i) {
+    if (world.is_blocked(all.edges[i].a) || world.is_blocked(all.edges[i].b)) continue;
+    walkable.graph.edges.push_back(all.edges[i]);
+    walkable.numbers.push_back(static_cast<std::int64_t>(i));
+  }
+  return walkable;
+}
+
+EdgeCover cover_edges(const World& world, const Task& task, std::optional<double> reset_cost,
+                      const std::function<Plan(const World&, const Task&)>& plan_nodes) {
+  const auto [graph, numbers] = walkable_edges(world);
+  const EdgeKind kind = world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected;
+  EdgeCover cover{.walk = {}, .edges = std::ssize(graph.edges)};
+  const auto all =
+      postman_walk(graph, kind, world.node_count(), task.start(), {.end = task.end(), .reset_cost = reset_cost});
+  const EdgePlanner planner(world, task, graph, reset_cost);
+  cover.bound = planner.bound();
+  if (all && all->cost <= task.limit()) {
+    cover.walk = *all;
+    cover.all_cheapest = true;
+    cover.policy = "postman";
+  } else if (auto exact = planner.exact()) {
+    cover.walk = *std::move(exact);
+    cover.policy = "exact";
+    cover.bound = static_cast<double>(planner.different(cover.walk));
+  } else {
+    Rng rng(kNoiseSeed);
+    std::vector<EdgeWalk> walks = {planner.greedy({}, 0, rng)};
+    if (all) walks.push_back(planner.greedy(all->edges, 0, rng));
+    if (kind == EdgeKind::kUndirected) {
+      const std::int64_t tries = std::clamp<std::int64_t>(kNoisyWork / (cover.edges * cover.edges), 4, kMostNoisyTries);
+      for (std::int64_t i = 0; i < tries; ++i) walks.push_back(planner.greedy({}, kNoise, rng));
+    }
+    if (kind == EdgeKind::kDirected) {
+      walks.push_back(planner.planned(plan_nodes));
+      cover.bound = std::min(cover.bound, planner.planned_bound());
+    }
+    const auto rank = [&](const EdgeWalk& walk) { return std::pair(planner.different(walk), -walk.cost); };
+    cover.walk = *std::ranges::max_element(walks, {}, rank);
+  }
+  cover.walked = planner.different(cover.walk);
+  for (std::int64_t& edge : cover.walk.edges) {
+    if (edge >= 0) edge = numbers[edge];
+  }
+  return cover;
+}
+
+}  // namespace graphdrl

@@ -1,0 +1,47 @@
+// Walks over edges: how many different ones a budget pays for.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "graphdrl/base/clock.h"
+#include "graphdrl/env/task.h"
+#include "graphdrl/graph/postman.h"
+#include "graphdrl/planners/plan.h"
+
+namespace graphdrl {
+
+// The edges of a world that can be walked, loops and parallel ones too; numbers are those of the world's file, or of
+// Graph::edges() where that has no list of its own.
+struct WalkableEdges {
+  Multigraph graph;
+  std::vector<std::int64_t> numbers;  // [edges]
+};
+WalkableEdges walkable_edges(const World& world);
+
+struct EdgeCover {
+  EdgeWalk walk;              // with the numbers of WalkableEdges::numbers
+  std::int64_t walked = 0;    // different edges
+  std::int64_t edges = 0;     // that there are
+  double bound = 0;           // no walk within the budget has more
+  bool all_cheapest = false;  // it walks all, and none that does is cheaper
+  std::string policy = {};    // what made it, where that was none of plan_nodes
+  double percent(double count) const { return edges == 0 ? 100.0 : 100.0 * count / static_cast<double>(edges); }
+};
+
+// A walk over as many edges as the task's budget pays for; among those over all edges the cheapest [postman_walk()].
+// Each edge is worth 1, whatever the nodes' prizes are.
+//
+// Where not all can be walked: graphs of up to kExactEdges edges are searched by states. A directed graph is planned as
+// nodes are, on a graph with a node in the middle of each edge. An undirected one by the beginning of the cheapest walk
+// over all, and by going to the nearest edge left again and again, with distances that seem a little longer by chance;
+// the best of these counts.
+//
+// plan_nodes: plans a task of a world, within a clock. reset_cost: of a jump to the start, in a directed graph.
+inline constexpr std::int64_t kExactEdges = 12;
+EdgeCover cover_edges(const World& world, const Task& task, std::optional<double> reset_cost,
+                      const std::function<Plan(const World&, const Task&)>& plan_nodes);
+
+}  // namespace graphdrl
