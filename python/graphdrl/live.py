@@ -177,9 +177,9 @@ class LiveExploration:
 
 def _step(answer: str) -> Step | None:
     """What an answer of the protocol says; None where there is none."""
-    if not answer:
+    said = json.loads(answer) if answer else {}
+    if not said.keys() & {"move", "reset", "done"}:
         return None
-    said = json.loads(answer)
     return Step(said.get("move"), said.get("reset", False), said.get("done"), said.get("expects"))
 
 

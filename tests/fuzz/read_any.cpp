@@ -15,6 +15,9 @@
 #include "graphdrl/io/map_formats.h"
 #include "graphdrl/io/readers.h"
 #include "graphdrl/io/safetensors.h"
+#include "graphdrl/io/text.h"
+#include "graphdrl/live/graph_walker_service.h"
+#include "graphdrl/live/session.h"
 #include "graphdrl/report/plan_files.h"
 
 namespace {
@@ -69,6 +72,41 @@ void read_plan_text(const std::string& text) {
   plan_json(answer);
 }
 
+// Messages of a live exploration, a line each.
+void read_messages(const std::string& text) {
+  if (text.find("\"policy\"") != std::string::npos) return;  // some plan for long
+  LiveSession session({});
+  std::vector<std::string> taken;
+  std::vector<std::string> answers;
+  LiveSession recorded({}, [&](std::string_view message, std::string_view answer) {
+    taken.emplace_back(message);
+    answers.emplace_back(answer);
+  });
+  for (Lines lines(text); lines.next();) {
+    const std::string answer = session.answer(lines.line());
+    if (answer != recorded.answer(lines.line())) fail("the same messages got other answers");
+    if (nlohmann::json::parse(answer).empty()) fail("an empty answer");
+  }
+  LiveSession replayed({});
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    if (!replayed.replay(taken[i], answers[i])) fail("a transcript played again comes out otherwise");
+  }
+  if (const LiveExploration* const exploration = session.exploration()) {
+    live_report_json(exploration->report()).dump();
+    World("map", exploration->map());
+    plan_json(exploration->answer("map"));
+  }
+}
+
+// GraphWalker's models, walked for a while.
+void read_walker_models(const std::string& text) {
+  constexpr int kMostSteps = 2000;
+  for (const WalkerModel& model : parse_walker_models(text, "input")) {
+    ModelWalk walk(model);
+    for (int step = 0; step < kMostSteps && walk.has_next(); ++step) walk.next();
+  }
+}
+
 using Reader = std::function<void(const std::string&)>;
 
 std::map<std::string, Reader, std::less<>> all_readers() {
@@ -79,6 +117,8 @@ std::map<std::string, Reader, std::less<>> all_readers() {
   readers.emplace("map-text", [](const std::string& bytes) { map_text(bytes, "input", {}); });
   readers.emplace("safetensors", [](const std::string& text) { Safetensors::parse(text, "input"); });
   readers.emplace("plan", read_plan_text);
+  readers.emplace("live", read_messages);
+  readers.emplace("walker-models", read_walker_models);
   return readers;
 }
 

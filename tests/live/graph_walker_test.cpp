@@ -96,6 +96,16 @@ TEST(ModelWalk, GoesAsFarAsItCan) {
   EXPECT_THAT(walk("random(length(9))", kTrap), ElementsAre("a", "ab", "b"));
 }
 
+TEST(ModelWalk, EndsThoughAnEdgeFromNowhereIsNotWalked) {
+  constexpr const char* kEntries = R"json({"models":[{"name":"m","generator":"random(edge_coverage(100))",
+    "startElementId":"a","vertices":[{"id":"a","name":"a"},{"id":"b","name":"b"}],
+    "edges":[{"id":"1","name":"ab","sourceVertexId":"a","targetVertexId":"b"},
+             {"id":"2","name":"ba","sourceVertexId":"b","targetVertexId":"a"},
+             {"id":"3","name":"in","targetVertexId":"a"}]}]})json";
+  EXPECT_THAT(walk("", kEntries), ElementsAre("a", "ab", "b", "ba", "a"));
+  EXPECT_EQ(walk("random(length(7))", kEntries).size(), 15u);
+}
+
 TEST(GraphWalkerService, SpeaksAsItsClientsExpect) {
   HttpServer server(0);
   const GraphWalkerService service(server, {});
@@ -114,6 +124,9 @@ TEST(GraphWalkerService, SpeaksAsItsClientsExpect) {
   EXPECT_THAT(loaded["note"].get<std::string>(), HasSubstr("planned"));
   EXPECT_EQ(ask("PUT", "setData/user%20name=%22a%3Db%22")["result"], "ok");
   EXPECT_EQ(ask("GET", "getData")["data"]["user name"], "a=b");
+  EXPECT_EQ(ask("PUT", "setData/%ff=1")["result"], "nok");
+  EXPECT_EQ(ask("PUT", "setData/path=a/b")["result"], "ok");
+  EXPECT_EQ(ask("GET", "getData")["data"]["path"], "a/b");
   int steps = 0;
   for (; ask("GET", "hasNext")["hasNext"] == "true"; ++steps) {
     const auto step = ask("GET", "getNext");

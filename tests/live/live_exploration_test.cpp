@@ -227,8 +227,14 @@ TEST(LiveExploration, PlansAroundMovesThatLeadElsewhere) {
   EXPECT_THAT(report.unreachable, ElementsAre("b"));
   EXPECT_EQ(exploration.next().move, "y");
   exploration.observe({.state = "a"});
-  // x led to c: nothing is left that can be reached.
-  EXPECT_EQ(exploration.next().done, LiveStep::Done::kUnreachable);
+  // x led to c. Nothing else is left: it may lead to b again, as the client says.
+  ASSERT_EQ(exploration.next().expects, "b");
+  exploration.observe({.state = "c"});
+  ASSERT_EQ(exploration.next().move, "y");
+  exploration.observe({.state = "a"});
+  ASSERT_EQ(exploration.next().expects, "b");
+  exploration.observe({.state = "c"});
+  EXPECT_EQ(exploration.next().done, LiveStep::Done::kUnreachable) << "the third surprise";
 }
 
 TEST(LiveExploration, ForgetsMovesThatDisappear) {
@@ -264,6 +270,7 @@ TEST(LiveExploration, RefusesWhatCannotBeAndChangesNothing) {
   const auto error = [&](const LiveObservation& seen) { return error_of([&] { exploration.observe(seen); }); };
   EXPECT_THAT(error({.state = ""}), HasSubstr("state"));
   EXPECT_THAT(error({.state = "a", .cost = -1}), HasSubstr("cost"));
+  EXPECT_THAT(error({.state = "a", .cost = 1e308}), HasSubstr("cost"));
   EXPECT_THAT(error({.state = "a", .prize = std::nan("")}), HasSubstr("prize"));
   EXPECT_THAT(error({.state = "a", .failed = true}), HasSubstr("failed"));
   EXPECT_THAT(error({.state = "a", .moves = {{{.name = "x"}, {.name = "x"}}}}), HasSubstr("twice"));
@@ -285,6 +292,126 @@ TEST(LiveExploration, TakesStatesWithManyMoves) {
     exploration.observe({.state = "a"});
   }
   EXPECT_EQ(done.size(), moves.size());
+}
+
+// A client that lies: moves fail, cost other than said, lead elsewhere, come and go; resets fail and lead elsewhere.
+TEST(LiveExploration, BearsAClientThatLies) {
+  Rng rng(31);
+  const std::vector<std::string> policies = {"novelty", "nearest", "dfs",         "pocket",   "open",     "frontier",
+                                             "tour",    "beam:3",  "random-walk", "guided:2", "explorer", "search:50"};
+  for (int round = 0; round < 240; ++round) {
+    const std::string& policy = policies[round % policies.size()];
+    LiveOptions options{.cover = rng.index(2) == 0 ? Cover::kNodes : Cover::kEdges, .policy = policy};
+    if (rng.index(2) == 0) options.budget = rng.index(60);
+    options.end_at_start = rng.index(2) == 0;
+    if (rng.index(3) > 0) options.reset_cost = rng.index(4);
+    LiveExploration exploration(options);
+    const auto name = [&](char kind, int most) { return std::string(1, kind) + std::to_string(rng.index(most)); };
+    std::map<std::string, std::set<std::string>> has;  // moves by state
+    std::string state = "s0";
+    double cost = 0;
+    for (int step = 0; step < 150; ++step) {
+      LiveObservation seen{.state = state, .prize = 1.0 + rng.index(3)};
+      if (!has.contains(state) || rng.index(3) == 0) {
+        std::vector<OfferedMove> moves;
+        std::set<std::string> names;
+        for (int i = rng.index(5); i >= 0; --i) {
+          OfferedMove move{.name = name('m', 6)};
+          if (!names.insert(move.name).second) continue;
+          if (rng.index(3) == 0) move.to = name('s', 8);
+          if (rng.index(3) == 0) move.cost = rng.index(4);
+          moves.push_back(std::move(move));
+        }
+        seen.moves = moves;
+        has[state] = names;
+      }
+      if (step > 0 && rng.index(4) == 0) seen.cost = rng.index(8);
+      if (step > 0) seen.failed = rng.index(5) == 0;
+      exploration.observe(seen);
+      const LiveStep next = exploration.next();
+      ASSERT_EQ(exploration.next().move, next.move);
+      if (next.kind == LiveStep::Kind::kDone) {
+        if (rng.index(2) == 0) break;
+        exploration.observe({.state = state, .moves = {{{.name = name('n', 100)}}}});  // there is more
+        has[state] = {exploration.next().move};
+        if (exploration.next().kind != LiveStep::Kind::kMove) break;
+      } else if (next.kind == LiveStep::Kind::kMove) {
+        ASSERT_TRUE(has[state].contains(next.move)) << policy << ' ' << round;
+      } else {
+        ASSERT_TRUE(options.reset_cost);
+      }
+      state = name('s', 8);
+      cost = exploration.report().cost;
+    }
+    EXPECT_GE(exploration.report().cost, cost);
+    exploration.map();
+    exploration.answer("lies");
+  }
+}
+
+TEST(LiveExploration, SaysThatTheBudgetIsSpentWhereStepsCostMore) {
+  LiveExploration exploration({.cover = Cover::kEdges, .budget = 2, .policy = "nearest"});
+  exploration.observe({.state = "a", .moves = {{{.name = "m"}, {.name = "x"}}}});
+  EXPECT_EQ(exploration.next().kind, LiveStep::Kind::kMove);
+  exploration.observe({.state = "b", .cost = 5, .moves = {{{.name = "m"}, {.name = "x"}}}});
+  EXPECT_EQ(exploration.next().done, LiveStep::Done::kBudget);
+}
+
+TEST(LiveExploration, GivesUpResetsThatFail) {
+  LiveExploration exploration({.reset_cost = 1});
+  exploration.observe({.state = "a", .moves = {{{.name = "m"}, {.name = "n"}}}});
+  exploration.next();
+  exploration.observe({.state = "b", .moves = std::vector<OfferedMove>()});
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(exploration.next().kind, LiveStep::Kind::kReset);
+    exploration.observe({.state = "b", .failed = true});
+  }
+  EXPECT_EQ(exploration.next().done, LiveStep::Done::kUnreachable);
+  ASSERT_EQ(exploration.report().failed.size(), 1u);
+  EXPECT_EQ(exploration.report().failed[0].failures, 3);
+}
+
+TEST(LiveExploration, FollowsResetsToWhereTheyLead) {
+  LiveExploration exploration({.cover = Cover::kEdges, .reset_cost = 1});
+  exploration.observe({.state = "a", .moves = {{{.name = "m"}, {.name = "n"}}}});
+  exploration.next();
+  exploration.observe({.state = "b", .moves = std::vector<OfferedMove>()});
+  ASSERT_EQ(exploration.next().kind, LiveStep::Kind::kReset);
+  exploration.observe({.state = "c", .cost = 3, .moves = {{{.name = "x"}, {.name = "y"}}}});
+  exploration.next();
+  exploration.observe({.state = "a", .moves = std::vector<OfferedMove>()});
+  const LiveStep step = exploration.next();
+  EXPECT_EQ(step.kind, LiveStep::Kind::kReset) << "to c, where a move is left";
+  EXPECT_EQ(step.expects, "c");
+}
+
+TEST(LiveExploration, ComesHomeInTheEndWithoutABudget) {
+  for (const std::string& policy : kPolicies) {
+    LiveExploration exploration({.end_at_start = true, .policy = policy});
+    exploration.observe({.state = "a", .moves = {{{.name = "m"}}}});
+    ASSERT_EQ(exploration.next().move, "m") << policy;
+    exploration.observe({.state = "b", .moves = {{{.name = "back", .to = "a"}}}});
+    EXPECT_EQ(exploration.next().move, "back") << policy;
+    exploration.observe({.state = "a"});
+    EXPECT_EQ(exploration.next().done, LiveStep::Done::kCovered) << policy;
+    EXPECT_EQ(exploration.report().state, "a");
+  }
+}
+
+TEST(LiveExploration, BelievesWhatItFoundOutUntilTheClientSaysOtherwise) {
+  LiveExploration exploration({.cover = Cover::kEdges, .policy = "nearest"});
+  const std::vector<OfferedMove> moves = {{.name = "m", .to = "b", .cost = 1}, {.name = "n", .to = "b", .cost = 9}};
+  exploration.observe({.state = "a", .moves = moves});
+  EXPECT_EQ(exploration.next().move, "m");
+  exploration.observe({.state = "b", .cost = 50, .moves = {{{.name = "back"}}}});
+  exploration.next();
+  std::vector<OfferedMove> more = moves;
+  more.push_back({.name = "o", .to = "c"});
+  exploration.observe({.state = "a", .moves = more});
+  ASSERT_EQ(exploration.map().multigraph->edges[0].cost, 50);
+  more[0].cost = 2;
+  exploration.observe({.state = "a", .moves = more});
+  EXPECT_EQ(exploration.map().multigraph->edges[0].cost, 2);
 }
 
 TEST(LiveExploration, IsAMapWithAWalk) {

@@ -26,10 +26,9 @@ TEST(LiveSession, AnswersMessages) {
             R"({"id":"two","reset":true,"expects":"login"})");
   EXPECT_EQ(session.answer(R"({"state":"login"})"), R"({"move":"help","expects":"help"})");
   EXPECT_EQ(session.answer(R"({"id":4,"state":"login","failed":true})"), R"({"id":4,"move":"help","expects":"help"})");
-  EXPECT_EQ(session.answer(R"({"id":5,"state":"error","moves":[]})"),
-            R"({"id":5,"done":"unreachable","report":{"steps":4,"cost":6.5,"states":3,"transitions":2,"resets":1,)"
-            R"("failed":[],"surprises":[{"step":4,"state":"login","move":"help","expected":"help","got":"error"}],)"
-            R"("surprise_count":1,"unreachable":["help"]}})");
+  EXPECT_EQ(session.answer(R"({"id":5,"state":"help","moves":[]})"),
+            R"({"id":5,"done":"covered","report":{"steps":4,"cost":6.5,"state":"help","states":3,"transitions":2,)"
+            R"("resets":1,"failed":[],"surprises":[],"surprise_count":0,"unreachable":[]}})");
   EXPECT_EQ(session.close(), std::nullopt);
 }
 
@@ -56,6 +55,7 @@ TEST(LiveSession, SaysWhatIsWrongAndChangesNothing) {
       {R"({"id":1,"state":"a","moves":["x","x"]})", "twice"},
       {R"({"id":1,"state":"a","moves":[1]})", "not an object"},
       {R"({"id":[],"state":"a"})", R"("field":"id")"},
+      {R"({"id":1,"state":"a","cost":1e300})", R"("field":"cost")"},
       {R"({"id":1,"state":"a","explorer":1})", "there is one explorer"},
       {R"({"id":1,"open":{"protocol":2}})", R"("field":"protocol")"},
       {R"({"id":1,"open":{"cover":"faces"}})", "nodes or edges"},
@@ -71,6 +71,8 @@ TEST(LiveSession, SaysWhatIsWrongAndChangesNothing) {
     EXPECT_EQ(session.exploration(), nullptr) << message;
   }
   EXPECT_THAT(session.answer(std::string(200, '[')), HasSubstr("nested too deeply"));
+  EXPECT_THAT(session.answer(R"({"id":")" + std::string(300, 'x') + R"(","state":"a"})"), HasSubstr("256 bytes"));
+  EXPECT_TRUE(session.refused());
   EXPECT_EQ(session.answer(R"({"id":1,"open":{}})"), R"({"id":1,"ok":true,"protocol":1})") << "it still can be opened";
   EXPECT_THAT(session.answer(R"({"id":2,"open":{}})"), HasSubstr("has begun"));
 }
@@ -95,6 +97,12 @@ std::vector<std::string> drive(LiveSession& session, int from, int to) {
     }
   }
   return answers;
+}
+
+TEST(LiveSession, TakesNothingMoreOnceItCouldNotWrite) {
+  LiveSession session({}, [](auto, auto) { throw Error({.what = "the disk is full"}); });
+  EXPECT_THAT(error_of([&] { session.answer(R"({"state":"a","moves":["x"]})"); }), HasSubstr("full"));
+  EXPECT_THAT(session.answer(R"({"state":"b"})"), HasSubstr("could not be written"));
 }
 
 TEST(Transcript, GoesOnWhereItEnds) {
@@ -143,6 +151,18 @@ TEST(Transcript, RefusesOtherFiles) {
   write_file(folder / "bad",
              "{\"live\":1,\"options\":{}}\n{\"message\":{\"state\":\"a\"},\"answer\":{\"move\":\"x\"}}\n");
   EXPECT_THAT(error_of([&] { replay_transcript(folder / "map"); }), HasSubstr("no transcript"));
+  write_file(folder / "other", "{\"live\":9,\"options\":{}}\n");
+  EXPECT_THAT(error_of([&] { replay_transcript(folder / "other"); }), HasSubstr("another protocol"));
+  for (const char* const answer : {"{}", "5"}) {
+    write_file(folder / "none",
+               std::string("{\"live\":1,\"options\":{}}\n{\"message\":{\"state\":\"a\"},\"answer\":") + answer + "}\n");
+    EXPECT_THAT(error_of([&] { replay_transcript(folder / "none"); }), HasSubstr("line 2")) << answer;
+  }
+  for (const char* const begun : {"", "{\"liv"}) {  // killed before the first line was whole
+    write_file(folder / "begun", begun);
+    EXPECT_EQ(begin_live({}, {.file = folder / "begun", .resume = true}).turns, 0);
+    EXPECT_THAT(read_file(folder / "begun"), StartsWith("{\"live\":1"));
+  }
   EXPECT_THAT(error_of([&] { replay_transcript(folder / "odd"); }), HasSubstr("line 2"));
   EXPECT_THAT(error_of([&] { replay_transcript(folder / "bad"); }), HasSubstr("no such move"));
   EXPECT_THAT(error_of([&] { begin_live({}, {.file = folder / "bad"}); }), HasSubstr("there already"));

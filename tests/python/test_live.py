@@ -112,6 +112,21 @@ def test_the_discovered_map_is_a_map(run, tmp_path):
     assert "s3" in files[3].read_text(encoding="utf-8")
 
 
+def test_a_transcript_is_a_replay(run, tmp_path):
+    file = tmp_path / "door.jsonl"
+    client = Client("--cover", "edges", "--transcript", file)
+    state, answer = "s0", client.ask({"state": "s0", "moves": ["a", "b"]})
+    while "done" not in answer:
+        state = outcome(state, answer)
+        answer = client.ask({"state": state, "moves": ["a", "b"]})
+    client.close()
+    before = file.read_bytes()
+    assert run("graphdrl", "report", file, "-o", tmp_path / "page.html").returncode == 0
+    page = (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "seen_after_step" in page or "s6" in page
+    assert file.read_bytes() == before
+
+
 def test_what_is_wrong_gets_one_line(tmp_path):
     answers, _ = conversation(["", "nonsense", '{"state":"a","cost":NaN}', '{"id":1,"state":"a","moves":["x"]}'])
     assert [list(json.loads(line)) for line in answers[:2]] == [["error"], ["error"]]

@@ -16,6 +16,7 @@
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/file_check.h"
 #include "graphdrl/io/json.h"
+#include "graphdrl/live/transcript.h"
 #include "graphdrl/report/report_page.h"
 
 namespace graphdrl {
@@ -52,6 +53,12 @@ ReportPage make_page(const ReportOptions& options, const std::optional<World>& w
   for (const std::string& input : options.inputs) {
     if (std::filesystem::is_directory(input)) {
       page.add_run(name_of(input), input);
+    } else if (is_transcript(read_file(input))) {
+      const LiveRun run = replay_transcript(input);
+      if (run.session->exploration() == nullptr) {
+        throw Error({.what = "nothing was observed in the transcript", .where = input});
+      }
+      page.add_plan(run.session->exploration()->answer(name_of(input)));
     } else if (const auto evaluation = read_evaluation(input)) {
       page.add_evaluation(name_of(input), *evaluation);
     } else if (world) {
@@ -191,8 +198,10 @@ void add_report_command(CLI::App& app) {
       "report", "Make a page of plans, trainings and evaluations: replays, curves, tables, in one HTML file");
   const auto options = std::make_shared<ReportOptions>();
   command
-      .add_option("inputs", options->inputs,
-                  "Plans that `plan --out` wrote (JSON or CSV), folders of `train`, and what `evaluate --json` printed")
+      .add_option(
+          "inputs", options->inputs,
+          "Plans that `plan --out` wrote (JSON or CSV), transcripts of `explore --live`, folders of `train`, and "
+          "what `evaluate --json` printed")
       ->required()
       ->type_name("INPUTS");
   add_text_option(command, "-o,--out", options->out, "FILE", "The page to write");

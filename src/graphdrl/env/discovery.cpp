@@ -190,6 +190,7 @@ void Discovery::connect(const Edge& edge, const Graph::Places& places) {
 
 void Discovery::disconnect(NodeId from, NodeId to) {
   Known& known = *known_;
+  const double cost = known.open.cost(from, known.open.index_of(from, to));
   known.open.remove_edge(from, to);
   bool apart = true;
   if (known.into) {
@@ -201,9 +202,24 @@ void Discovery::disconnect(NodeId from, NodeId to) {
     known.frontier_neighbours[from] -= known.frontier[to];
     known.frontier_neighbours[to] -= known.frontier[from];
   }
-  // A node without a way to the end was on nobody's way there.
-  if (to_end_ == nullptr || (*to_end_)[to] == kNoLimit) return;
-  *to_end_ = costs_to(view_.into(), end_);
+  if (to_end_ != nullptr) lengthen(from, to, cost);
+}
+
+// An edge is gone that may have been on ways to the end.
+void Discovery::lengthen(NodeId from, NodeId to, double cost) {
+  std::vector<double>& costs = *to_end_;
+  const auto is_on_way = [&](NodeId a, NodeId b) { return costs[b] < kNoLimit && costs[a] == cost + costs[b]; };
+  const Graph& open = known_->open;
+  if (!is_on_way(from, to) && (open.directed() || !is_on_way(to, from))) return;
+  if (!open.directed() || view_.into().degree(from) > 0 || from == end_) {
+    costs = costs_to(view_.into(), end_);
+    return;
+  }
+  // Nobody's way leads through it.
+  costs[from] = kNoLimit;
+  for (int i = 0; i < open.degree(from); ++i) {
+    costs[from] = std::min(costs[from], open.cost(from, i) + costs[open.neighbours(from)[i]]);
+  }
 }
 
 void Discovery::close(NodeId node) {

@@ -106,6 +106,7 @@ class Discovery {
   void count(NodeId node);
   void leave_frontier(NodeId node);
   void shorten(NodeId from, double cost);
+  void lengthen(NodeId from, NodeId to, double cost);
 
   std::shared_ptr<Known> known_;
   View view_;

@@ -16,8 +16,8 @@
 namespace graphdrl {
 namespace {
 
-constexpr double kFineCosts =
-    1e9;  // of the dearest edge: finer differences of costs that are no whole numbers are lost
+// Costs that are no whole numbers are rounded to this part of the dearest one.
+constexpr double kFineCosts = 1e9;
 
 // An edge of an Eulerian graph, as often as it stands there.
 struct Part {

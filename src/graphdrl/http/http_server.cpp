@@ -395,12 +395,12 @@ std::optional<HttpAnswer> HttpServer::Loop::refusal(const Parser::value_type& re
   return answer;
 }
 
-// Of the path itself, else of all in its folder.
+// Of the path itself, else of all in its folder, or in the folder around that.
 const HttpServer::Loop::Methods* HttpServer::Loop::methods_of(std::string_view path) const {
   auto route = routes_.find(path);
-  const std::size_t folder = path.rfind('/');
-  if (route == routes_.end() && folder != std::string_view::npos && folder + 1 < path.size()) {
-    route = routes_.find(std::string(path.substr(0, folder)) + "/*");
+  for (std::size_t folder = path.rfind('/'); route == routes_.end() && folder != std::string_view::npos && folder > 0;
+       folder = path.rfind('/', folder - 1)) {
+    if (folder + 1 < path.size()) route = routes_.find(std::string(path.substr(0, folder)) + "/*");
   }
   return route == routes_.end() ? nullptr : &route->second;
 }

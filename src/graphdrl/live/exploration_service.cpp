@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <random>
+#include <string_view>
 #include <utility>
 
 #include "graphdrl/live/transcript.h"
@@ -27,14 +28,14 @@ HttpAnswer refusal(int status, const std::string& text) {
   return json_answer(status, nlohmann::ordered_json{{"error", text}}.dump());
 }
 
-bool is_error(const std::string& answer) {
-  return nlohmann::json::parse(answer).contains("error");
-}
-
-// Nobody guesses another one's.
+// A name that no other client guesses.
 std::string new_name() {
   std::random_device device;
   return fmt::format("{:08x}{:08x}", device(), device());
+}
+
+std::string name_in(const HttpRequest& request) {
+  return request.path.substr(request.path.rfind('/') + 1);
 }
 
 }  // namespace
@@ -56,29 +57,49 @@ ExplorationService::ExplorationService(HttpServer& server, LiveOptions defaults,
 
 void ExplorationService::end_idle_ones() {
   const auto before = Clock::now() - limits_.idle;
-  std::erase_if(running_, [&](const auto& one) { return one.second.last < before; });
+  for (auto one = running_.begin(); one != running_.end();) {
+    if (one->second.last < before) {
+      written_bytes_ -= one->second.written->lines.size();
+      one = running_.erase(one);
+    } else {
+      ++one;
+    }
+  }
 }
 
 ExplorationService::Running* ExplorationService::find(const HttpRequest& request) {
-  const auto found = running_.find(request.path.substr(request.path.rfind('/') + 1));
+  const auto found = running_.find(name_in(request));
   if (found == running_.end()) return nullptr;
   found->second.last = Clock::now();
   return &found->second;
+}
+
+// What is too much is dropped whole: half a transcript is of no use.
+void ExplorationService::write(Written& written, std::string_view line) {
+  if (written.dropped) return;
+  if (written.lines.size() + line.size() > limits_.transcript_bytes ||
+      written_bytes_ + line.size() > limits_.all_transcript_bytes) {
+    written_bytes_ -= written.lines.size();
+    written = {.lines = {}, .dropped = true};
+    return;
+  }
+  written.lines += line;
+  written_bytes_ += line.size();
 }
 
 HttpAnswer ExplorationService::begin(const HttpRequest& request) {
   if (running_.size() >= limits_.explorations) {
     return refusal(kTooMany, fmt::format("there are {} explorations already", running_.size()));
   }
-  Running one{
-      .session = {}, .transcript = std::make_shared<std::string>(transcript_head(defaults_)), .last = Clock::now()};
+  Running one{.session = {}, .written = std::make_shared<Written>(), .last = Clock::now()};
+  write(*one.written, transcript_head(defaults_));
   one.session = std::make_unique<LiveSession>(
-      defaults_, [lines = one.transcript, most = limits_.transcript_bytes](auto message, auto answer) {
-        if (lines->size() <= most) *lines += transcript_line(message, answer);
+      defaults_, [this, written = one.written](std::string_view message, std::string_view answer) {
+        write(*written, transcript_line(message, answer));
       });
   if (!request.body.empty()) {
     const std::string answer = one.session->answer(request.body);
-    if (is_error(answer)) return json_answer(kBadRequest, answer);
+    if (one.session->refused()) return json_answer(kBadRequest, answer);
     if (one.session->exploration() != nullptr) return refusal(kBadRequest, "a message that opens, or none, begins");
   }
   const std::string name = new_name();
@@ -90,26 +111,23 @@ HttpAnswer ExplorationService::take(const HttpRequest& request) {
   Running* const one = find(request);
   if (one == nullptr) return refusal(kNotFound, "no such exploration");
   std::string answer = one->session->answer(request.body);
-  const int status = is_error(answer) ? kBadRequest : HttpAnswer().status;
-  return json_answer(status, std::move(answer));
+  return json_answer(one->session->refused() ? kBadRequest : HttpAnswer().status, std::move(answer));
 }
 
 HttpAnswer ExplorationService::transcript(const HttpRequest& request) {
   const Running* const one = find(request);
   if (one == nullptr) return refusal(kNotFound, "no such exploration");
-  if (one->transcript->size() > limits_.transcript_bytes) return refusal(kTooLarge, "the transcript is too long");
-  return {.type = "application/jsonl", .body = std::make_shared<const std::string>(*one->transcript)};
+  if (one->written->dropped) return refusal(kTooLarge, "the transcript is too long");
+  return {.type = "application/jsonl", .body = std::make_shared<const std::string>(one->written->lines)};
 }
 
 HttpAnswer ExplorationService::end(const HttpRequest& request) {
   const Running* const one = find(request);
   if (one == nullptr) return refusal(kNotFound, "no such exploration");
-  const LiveExploration* const exploration = one->session->exploration();
-  const LiveReport report = exploration == nullptr ? LiveReport() : exploration->report();
-  running_.erase(request.path.substr(request.path.rfind('/') + 1));
-  return json_answer(
-      HttpAnswer().status,
-      nlohmann::ordered_json{{"done", name_of(LiveStep::Done::kClosed)}, {"report", live_report_json(report)}}.dump());
+  std::string report = one->session->report();
+  written_bytes_ -= one->written->lines.size();
+  running_.erase(name_in(request));
+  return json_answer(HttpAnswer().status, std::move(report));
 }
 
 }  // namespace graphdrl

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "graphdrl/http/http_server.h"
 #include "graphdrl/live/session.h"
@@ -13,9 +14,11 @@
 namespace graphdrl {
 
 struct ExplorationLimits {
-  std::size_t explorations = 1000;                       // at once
-  std::chrono::milliseconds idle{3600'000};              // then an exploration ends
-  std::size_t transcript_bytes = std::size_t{64} << 20;  // of one; longer ones cannot be asked for
+  std::size_t explorations = 1000;           // at once
+  std::chrono::milliseconds idle{3600'000};  // then an exploration ends
+  // Of one transcript, and of all together; those that grow longer are dropped.
+  std::size_t transcript_bytes = std::size_t{64} << 20;
+  std::size_t all_transcript_bytes = std::size_t{1} << 30;
 };
 
 // POST /explorations begins one: the body is empty, or a message that opens; 201 with its name.
@@ -31,10 +34,14 @@ class ExplorationService {
  private:
   using Clock = std::chrono::steady_clock;
 
+  struct Written {
+    std::string lines;     // of a transcript
+    bool dropped = false;  // it grew too long
+  };
   struct Running {
     std::unique_ptr<LiveSession> session;
-    std::shared_ptr<std::string> transcript;  // its lines; cut off after ExplorationLimits::transcript_bytes
-    Clock::time_point last;                   // that it was asked
+    std::shared_ptr<Written> written;
+    Clock::time_point last;  // that it was asked
   };
 
   HttpAnswer begin(const HttpRequest& request);
@@ -42,11 +49,13 @@ class ExplorationService {
   HttpAnswer transcript(const HttpRequest& request);
   HttpAnswer end(const HttpRequest& request);
   void end_idle_ones();
+  void write(Written& written, std::string_view line);
   Running* find(const HttpRequest& request);
 
   LiveOptions defaults_;
   ExplorationLimits limits_;
   std::map<std::string, Running> running_;  // by name
+  std::size_t written_bytes_ = 0;           // of all transcripts
 };
 
 }  // namespace graphdrl

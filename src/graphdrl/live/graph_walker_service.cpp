@@ -9,6 +9,7 @@
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/graph/postman.h"
+#include "graphdrl/io/utf8.h"
 
 namespace graphdrl {
 namespace {
@@ -32,9 +33,12 @@ HttpAnswer not_ok(const std::string& error) {
           .body = std::make_shared<const std::string>(ordered_json{{"result", "nok"}, {"error", error}}.dump())};
 }
 
-// The last part of a path, whose %XX stand for bytes.
+// What stands in a path behind /graphwalker/COMMAND/. Each %XX stands for a byte.
 std::string argument_of(const HttpRequest& request) {
-  const std::string_view part = std::string_view(request.path).substr(request.path.rfind('/') + 1);
+  constexpr int kSlashesBefore = 3;
+  std::size_t begin = 0;
+  for (int slash = 0; slash < kSlashesBefore; ++slash) begin = request.path.find('/', begin) + 1;
+  const std::string_view part = std::string_view(request.path).substr(begin);
   std::string text;
   for (std::size_t i = 0; i < part.size(); ++i) {
     const std::string digits(part.substr(i + 1, 2));
@@ -158,7 +162,7 @@ bool ModelWalk::plan() {
   for (const StopCondition::Term& term : terms) {
     if (!ahead_.empty()) break;
     if (holds(term)) continue;
-    if (term.kind == Kind::kEdgeCoverage) plan_over_all_edges();
+    if (term.kind == Kind::kEdgeCoverage) plan_over_edges(/*again=*/false);
     if (term.kind == Kind::kVertexCoverage) plan_to([&](std::int64_t edge) { return !visited_[graph_.edges[edge].b]; });
     if (term.kind == Kind::kReachedVertex) {
       plan_to([&](std::int64_t edge) { return model_.vertices[graph_.edges[edge].b].name == term.name; });
@@ -172,7 +176,7 @@ bool ModelWalk::plan() {
            (term.kind == Kind::kLength || term.kind == Kind::kTimeDuration || term.kind == Kind::kNever);
   });
   if (ahead_.empty() && for_long) {
-    plan_over_all_edges();
+    plan_over_edges(/*again=*/true);
     // All that can be reached from here has been walked: on by any edge.
     const auto& leaving = leaving_[position_];
     if (ahead_.empty() && !leaving.empty())
@@ -181,9 +185,11 @@ bool ModelWalk::plan() {
   return !ahead_.empty();
 }
 
-void ModelWalk::plan_over_all_edges() {
+// By the shortest walk over all edges where none has been walked, or all have and are to be walked again; else to the
+// nearest edge left.
+void ModelWalk::plan_over_edges(bool again) {
   const auto walked = [&](int edge) { return walked_[edge]; };
-  if (std::ranges::none_of(number_of_, walked) || std::ranges::all_of(number_of_, walked)) {
+  if (std::ranges::none_of(number_of_, walked) || (again && std::ranges::all_of(number_of_, walked))) {
     const auto vertices = static_cast<NodeId>(model_.vertices.size());
     if (auto walk = postman_walk(graph_, EdgeKind::kDirected, vertices, position_, {})) {
       ahead_ = std::move(walk->edges);
@@ -268,6 +274,7 @@ HttpAnswer GraphWalkerService::get_data(const HttpRequest& /*request*/) {
 HttpAnswer GraphWalkerService::set_data(const HttpRequest& request) {
   if (walks_.empty()) return not_ok("no model is loaded");
   const std::string text = argument_of(request);
+  if (text != valid_utf8(text)) return not_ok("expected UTF-8");
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) return not_ok("expected setData/KEY=VALUE");
   std::string value = text.substr(equals + 1);

@@ -39,12 +39,11 @@ class ModelWalk {
   bool visited(NodeId vertex) const { return visited_[vertex]; }
   int walked_count() const { return walked_count_; }
   int visited_count() const { return visited_count_; }
-  std::int64_t pairs() const { return pairs_; }  // edges with their vertices
 
  private:
   bool holds(const StopCondition::Term& term) const;
   bool plan();
-  void plan_over_all_edges();
+  void plan_over_edges(bool again);
   template <typename Aim>
   void plan_to(const Aim& aimed_at);
 
@@ -57,7 +56,7 @@ class ModelWalk {
   int walked_count_ = 0;
   int visited_count_ = 0;
   std::int64_t steps_ = 0;
-  std::int64_t pairs_ = 0;
+  std::int64_t pairs_ = 0;           // edges with their vertices
   NodeId position_ = kNoNode;        // before the first vertex: none
   int edge_ = -1;                    // walked last, whose vertex comes next
   std::vector<std::int64_t> ahead_;  // edges of graph_, the next one last

@@ -14,9 +14,11 @@ namespace {
 
 constexpr const char* kNovelty = "novelty";
 
+constexpr double kMostAmount = 1e15;  // sums of so large ones are still exact to a tenth
+
 void check_amount(double amount, const char* field) {
-  if (std::isfinite(amount) && amount >= 0) return;
-  throw FieldError(field, {.what = "bad amount", .expected = "a number of at least 0", .got = decimal(amount)});
+  if (amount >= 0 && amount <= kMostAmount) return;
+  throw FieldError(field, {.what = "bad amount", .expected = "a number from 0 to 1e15", .got = decimal(amount)});
 }
 
 void check_name(const std::string& name, const char* field) {
@@ -97,6 +99,7 @@ void LiveExploration::observe(const LiveObservation& seen) {
     settle(*step, seen);
   } else if (seen.cost) {
     spent_ += *seen.cost;
+    graph_.change();
   }
   const std::int32_t state = graph_.enter(seen.state, seen.prize, kNoNode);
   if (seen.moves) graph_.offer(state, *seen.moves);
@@ -121,13 +124,8 @@ void LiveExploration::settle(const Pending& step, const LiveObservation& seen) {
                                    .got = seen.state});
     }
   }
-  if (reset) {
-    so_far_.resets += !seen.failed;
-    if (seen.failed) return;
-    const std::int32_t state = graph_.enter(seen.state, seen.prize, kNoNode);
-    if (state != graph_.reset_target()) graph_.reset_leads_to(state);
-    return;
-  }
+  if (cost != step.cost || seen.failed) graph_.change();  // policies counted on other sums
+  if (reset) return settle_reset(seen, cost);
   if (seen.failed) return graph_.failed(step.state, step.move);
   const StateMove move = graph_.moves(step.state)[step.move];
   const bool is_new = known < 0 || !graph_.visited(known);
@@ -137,6 +135,16 @@ void LiveExploration::settle(const Pending& step, const LiveObservation& seen) {
   }
   const std::int32_t state = graph_.enter(seen.state, seen.prize, known < 0 ? move.untried_node : kNoNode);
   graph_.done(step.state, step.move, state, cost);
+}
+
+void LiveExploration::settle_reset(const LiveObservation& seen, double cost) {
+  if (!seen.failed) {
+    reset_failures_ = 0;
+    ++so_far_.resets;
+    return graph_.reset_done(graph_.enter(seen.state, seen.prize, kNoNode), cost);
+  }
+  graph_.change();
+  if (++reset_failures_ >= StateGraph::kMostFailures) graph_.give_up_resets();
 }
 
 void LiveExploration::stand_at(std::int32_t state) {
@@ -152,10 +160,10 @@ void LiveExploration::stand_at(std::int32_t state) {
   while (std::ssize(seen_) < graph_.state_count()) seen_.push_back(graph_.node(static_cast<int>(seen_.size())));
   seen_after_.back() = static_cast<int>(seen_.size());
   if (task_) return;
-  task_.emplace(graph_.view(), node, options_.budget, options_.end_at_start ? End::at_start() : End::anywhere());
-  if (options_.end_at_start) {
-    task_ = task_->on(graph_.view(), node, node, graph_.discovery().keep_costs_to(node));
-  }
+  task_.emplace(graph_.view(), node, options_.budget, End::anywhere());
+  if (!options_.end_at_start) return;
+  way_home_ = graph_.discovery().keep_costs_to(node);
+  if (options_.budget < kNoLimit) task_ = task_->on(graph_.view(), node, node, way_home_);
 }
 
 Observation LiveExploration::observation() const {
@@ -175,6 +183,7 @@ const LiveStep& LiveExploration::next() {
   if (step_) return *step_;
   std::optional<LiveStep> step = choose();
   while (!step && graph_.retry()) step = choose();
+  if (!step) step = step_home();
   return step_.emplace(step ? *std::move(step) : done_now());
 }
 
@@ -182,41 +191,47 @@ const LiveStep& LiveExploration::next() {
 std::optional<LiveStep> LiveExploration::choose() {
   visits_.resize(graph_.view().node_count());
   const Observation now = observation();
-  const double way_home = task_->cost_to_end(now.position);
   if (now.action_count() == 0) return std::nullopt;
+  if (must_go_home(now)) return step_home();
+  if (nothing_left(now)) return std::nullopt;
   int action = kStop;
-  if (way_home < kNoLimit && way_home > now.spendable) {
-    if (now.position == task_->end()) return std::nullopt;
-    action = action_home();
-  } else if ((way_home == kNoLimit || !stops_) &&
-             Exploration(now, now.ground()).nearest_first_visit(look_).node == kNoNode) {
-    return std::nullopt;  // by itself the policy would go on, or look for a way home
-  } else {
-    policy_->act({&now, 1}, {&action, 1}, Clock().at_most(options_.think_s));
-  }
+  policy_->act({&now, 1}, {&action, 1}, Clock().at_most(options_.think_s));
   if (action == kStop) return std::nullopt;
   return tell(graph_.move_to(position_, now.target(action)));
 }
 
-// The first step of the cheapest way home. REQUIRES: there is one, and it has a step.
-int LiveExploration::action_home() const {
+// Steps cost more than was said, so that what is left does not pay for the way home any more.
+bool LiveExploration::must_go_home(const Observation& now) const {
+  return way_home_ != nullptr && (*way_home_)[now.position] < kNoLimit && (*way_home_)[now.position] > now.spendable;
+}
+
+// Asked only of policies that would not stop by themselves: those that walk on, and those that owe a way home that is
+// not known.
+bool LiveExploration::nothing_left(const Observation& now) {
+  if (stops_ && task_->cost_to_end(now.position) < kNoLimit) return false;
+  return Exploration(now, now.ground()).nearest_first_visit(look_).node == kNoNode;
+}
+
+// The first step of the cheapest way to the first state. Empty where it need not end there, is there, or knows no way.
+std::optional<LiveStep> LiveExploration::step_home() {
   const Observation now = observation();
-  int best = 0;
+  if (way_home_ == nullptr || now.position == walk_.front() || (*way_home_)[now.position] == kNoLimit) {
+    return std::nullopt;
+  }
+  NodeId next = kNoNode;
   double least = kNoLimit;
   for (int action = 0; action < now.action_count(); ++action) {
-    const double cost = now.cost(action) + task_->cost_to_end(now.target(action));
-    if (cost < least) {
-      best = action;
-      least = cost;
-    }
+    const double cost = now.cost(action) + (*way_home_)[now.target(action)];
+    if (cost >= least) continue;
+    next = now.target(action);
+    least = cost;
   }
-  return best;
+  return tell(graph_.move_to(position_, next));
 }
 
 LiveStep LiveExploration::tell(std::int32_t move) {
   if (move == StateGraph::kReset) {
-    pending_ =
-        Pending{.state = position_, .move = move, .expects = graph_.reset_target(), .cost = *options_.reset_cost};
+    pending_ = Pending{.state = position_, .move = move, .expects = graph_.reset_target(), .cost = graph_.reset_cost()};
     return {.kind = LiveStep::Kind::kReset, .expects = graph_.name(graph_.reset_target())};
   }
   const StateMove& told = graph_.moves(position_)[move];
@@ -241,7 +256,7 @@ void LiveExploration::next_was(const LiveStep& step) {
         moves, [&](const StateMove& one) { return !one.gone && graph_.move_name(one.name) == step.move; });
     if (found == moves.end()) throw Error({.what = "the state has no such move", .got = in_quotes(step.move)});
     move = static_cast<std::int32_t>(found - moves.begin());
-  } else if (!options_.reset_cost) {
+  } else if (!graph_.resets()) {
     throw Error({.what = "there are no resets"});
   }
   step_ = tell(move);
@@ -272,12 +287,14 @@ LiveStep LiveExploration::done_now() const {
 LiveReport LiveExploration::report() const {
   LiveReport report = so_far_;
   report.cost = spent_;
+  if (position_ >= 0) report.state = graph_.name(position_);
+  if (reset_failures_ > 0) report.failed.push_back({.state = "", .move = "", .failures = reset_failures_});
   report.states = graph_.visited_count();
   report.transitions = graph_.tried_count();
   for (std::int32_t state = 0; state < graph_.state_count(); ++state) {
     if (!graph_.visited(state)) report.unreachable.push_back(graph_.name(state));
     for (const StateMove& move : graph_.moves(state)) {
-      if (move.failures == 0 || move.gone) continue;
+      if (move.failures == 0 || (move.gone && !StateGraph::given_up(move))) continue;
       report.failed.push_back(
           {.state = graph_.name(state), .move = graph_.move_name(move.name), .failures = move.failures});
     }

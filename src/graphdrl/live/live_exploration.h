@@ -77,10 +77,11 @@ struct LiveReport {
   std::int64_t transitions = 0;
   std::int64_t resets = 0;
   struct Failed {
-    std::string state;
-    std::string move;
+    std::string state;  // empty of a reset
+    std::string move;   // likewise
     int failures;
   };
+  std::string state = {};                // where it is
   std::vector<Failed> failed = {};       // moves that have failed since they were done last
   std::vector<Surprise> surprises = {};  // the first kMostSurprisesKept
   std::int64_t surprise_count = 0;
@@ -131,9 +132,12 @@ class LiveExploration {
 
   void check(const LiveObservation& observation) const;
   void settle(const Pending& step, const LiveObservation& seen);
+  void settle_reset(const LiveObservation& seen, double cost);
   void stand_at(std::int32_t state);
   std::optional<LiveStep> choose();
-  int action_home() const;
+  bool must_go_home(const Observation& now) const;
+  bool nothing_left(const Observation& now);
+  std::optional<LiveStep> step_home();
   LiveStep tell(std::int32_t move);
   LiveStep done_now() const;
   Observation observation() const;
@@ -143,7 +147,10 @@ class LiveExploration {
   NoveltyPolicy* novelty_ = nullptr;  // that of policy_, where it is one
   bool stops_ = true;                 // whether the policy stops where nothing is left
   std::unique_ptr<Policy> policy_;
-  std::optional<Task> task_;  // once there is a start
+  std::optional<Task> task_;  // once there is a start; of policies: without a budget it may end anywhere
+  // [N], from each node to the first state, where it must end there; else null.
+  std::shared_ptr<const std::vector<double>> way_home_;
+  int reset_failures_ = 0;  // since a reset was done
   std::int32_t position_ = -1;
   std::optional<Pending> pending_;
   std::optional<LiveStep> step_;       // told, and not answered yet

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <exception>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -35,7 +35,7 @@ std::string text_of(const json& object, const char* field) {
 
 double amount_of(const json& object, const char* field) {
   const json& value = object.at(field);
-  const bool good = value.is_number() && std::isfinite(value.get<double>()) && value.get<double>() >= 0;
+  const bool good = value.is_number() && value.get<double>() >= 0;
   if (!good) {
     throw FieldError(field, {.what = "bad value", .expected = "a number of at least 0", .got = shortened(value)});
   }
@@ -100,6 +100,7 @@ LiveStep step_of(const json& answer) {
   } else if (answer.contains("reset")) {
     step.kind = LiveStep::Kind::kReset;
   } else {
+    if (!answer.contains("done")) throw Error({.what = "an answer without a step"});
     const std::string done = text_of(answer, "done");
     for (const auto why : {LiveStep::Done::kCovered, LiveStep::Done::kBudget, LiveStep::Done::kUnreachable}) {
       if (done == name_of(why)) step.done = why;
@@ -171,7 +172,11 @@ ordered_json live_options_json(const LiveOptions& options) {
 ordered_json live_report_json(const LiveReport& report) {
   ordered_json failed = ordered_json::array();
   for (const auto& [state, move, failures] : report.failed) {
-    failed.push_back({{"state", state}, {"move", move}, {"failures", failures}});
+    if (move.empty()) {
+      failed.push_back({{"reset", true}, {"failures", failures}});
+    } else {
+      failed.push_back({{"state", state}, {"move", move}, {"failures", failures}});
+    }
   }
   ordered_json surprises = ordered_json::array();
   for (const Surprise& one : report.surprises) {
@@ -187,6 +192,7 @@ ordered_json live_report_json(const LiveReport& report) {
   }
   return {{"steps", report.steps},
           {"cost", report.cost},
+          {"state", report.state},
           {"states", report.states},
           {"transitions", report.transitions},
           {"resets", report.resets},
@@ -231,9 +237,11 @@ ordered_json LiveSession::take(const json& message, const LiveStep* told) {
   }
   const LiveObservation seen = observation_of(message);
   if (!exploration_) open(json::object());
-  exploration_->observe(seen);
+  exploration_->observe(seen);  // throws before anything changes
+  broken_ = "the exploration has failed";
   if (told != nullptr) exploration_->next_was(*told);
   const LiveStep& step = exploration_->next();
+  broken_.clear();
   done_ = step.kind == LiveStep::Kind::kDone;
   return step_json(step);
 }
@@ -256,20 +264,26 @@ std::string LiveSession::answer(std::string_view text) {
   bool taken = false;
   const bool begun = exploration_.has_value();
   try {
+    if (!broken_.empty()) throw Error({.what = broken_});
     const json message = parse_json(text, "", "an object");
     if (message.is_object() && message.contains("id")) {
       const json& named = message.at("id");
-      if (!named.is_number_integer() && !named.is_string()) {
-        throw FieldError("id", {.what = "bad value", .expected = "a whole number or a text", .got = shortened(named)});
+      const bool good = named.is_number_integer() || named.is_string();
+      const std::string written = good ? named.dump() : "";
+      if (written.empty() || written.size() > kLongestId) {
+        throw FieldError("id", {.what = "bad value",
+                                .expected = "a whole number, or a text of at most 256 bytes",
+                                .got = shortened(named)});
       }
-      id = named.dump();
+      id = written;
+      refused_ = false;
       if (const std::string* const before = answered(id)) return *before;
     }
     answer = take(message, nullptr);
     taken = true;
   } catch (const FieldError& error) {
     answer = error_json(error.what(), error.field());
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     answer = error_json(error.what(), "");
   }
   if (!taken && !begun && exploration_ && !exploration_->observed()) exploration_.reset();
@@ -279,9 +293,13 @@ std::string LiveSession::answer(std::string_view text) {
     answer = std::move(with_id);
   }
   std::string line = answer.dump();
+  refused_ = !taken;
   if (!taken) return line;
+  // What cannot be written down would be missing when it is played again.
+  broken_ = "the transcript could not be written";
   // What came on several lines goes down as one.
   if (record_) record_(text.find('\n') == std::string_view::npos ? text : json::parse(text).dump(), line);
+  broken_.clear();
   keep(id, line);
   last_answer_ = line;
   return line;
@@ -290,6 +308,7 @@ std::string LiveSession::answer(std::string_view text) {
 bool LiveSession::replay(std::string_view text, std::string_view told) {
   const json message = parse_json(text, "");
   const json answer = parse_json(told, "");
+  if (!answer.is_object() || !message.is_object()) throw Error({.what = "no message with its answer"});
   std::string id;
   if (message.is_object() && message.contains("id")) id = message.at("id").dump();
   keep(id, std::string(told));
@@ -314,7 +333,10 @@ bool LiveSession::replay(std::string_view text, std::string_view told) {
 }
 
 std::optional<std::string> LiveSession::close() const {
-  if (done_) return std::nullopt;
+  return done_ ? std::nullopt : std::optional(report());
+}
+
+std::string LiveSession::report() const {
   const LiveReport report = exploration_ ? exploration_->report() : LiveReport();
   return ordered_json{{"done", name_of(LiveStep::Done::kClosed)}, {"report", live_report_json(report)}}.dump();
 }

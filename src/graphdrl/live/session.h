@@ -32,8 +32,10 @@ class LiveSession {
   explicit LiveSession(LiveOptions defaults, Record record = {});
 
   // What to answer to a message, without a line break. Bad ones are answered with an error and change nothing. What the
-  // record throws gets through.
+  // record throws gets through. After that, and after a failure of ours, all that follows is refused.
   std::string answer(std::string_view message);
+  // Whether the last answer was an error.
+  bool refused() const { return refused_; }
 
   // A message that was taken before, and its answer: of a transcript. Policies choose anew unless their time to think
   // is limited; where that comes out otherwise the transcript holds, and this gives false. Throws Error on messages
@@ -45,6 +47,7 @@ class LiveSession {
 
   // The end, where the last answer was not that already: {"done": "closed", "report": …}.
   std::optional<std::string> close() const;
+  std::string report() const;  // {"done": "closed", "report": …}, whatever the last answer was
 
   // Null until something was observed.
   const LiveExploration* exploration() const {
@@ -53,6 +56,7 @@ class LiveSession {
 
  private:
   static constexpr std::size_t kAnswersKept = 1024;  // for ids that come again
+  static constexpr std::size_t kLongestId = 256;     // bytes
 
   struct Answered {
     std::string id;  // as JSON
@@ -70,6 +74,8 @@ class LiveSession {
   std::optional<LiveExploration> exploration_;
   std::deque<Answered> answered_;
   std::string last_answer_;
+  std::string broken_;  // why nothing is taken any more
+  bool refused_ = false;
   bool done_ = false;
 };
 

@@ -37,12 +37,16 @@ void StateGraph::change() {
   changed_ = true;
 }
 
-NodeId StateGraph::add_node(double prize, Place place) {
-  const NodeId node = discovery_.see({.prize = prize});
+NodeId StateGraph::add_node(Place place) {
+  const NodeId node = discovery_.see();
   places_.push_back(place);
   ground_.grow(node + 1);
-  if (way_home_ && reset_target_ >= 0) settle_edge(node, this->node(reset_target_));
   return node;
+}
+
+// Where a walk must come home, resets lead there from nodes that were not entered yet, too.
+void StateGraph::add_way_home(NodeId node) {
+  if (way_home_ && reset_target_ >= 0) settle_edge(node, this->node(reset_target_));
 }
 
 std::int32_t StateGraph::see(std::string_view name, NodeId untried_node) {
@@ -50,12 +54,10 @@ std::int32_t StateGraph::see(std::string_view name, NodeId untried_node) {
   if (!fresh) return found->second;
   change();
   const std::int32_t state = found->second;
-  if (untried_node == kNoNode) {
-    untried_node = add_node(1, {.state = state});
-  } else {
-    places_[untried_node] = {.state = state};
-  }
+  if (untried_node == kNoNode) untried_node = add_node({.state = state});
+  places_[untried_node] = {.state = state};
   states_.push_back({.name = std::string(name), .node = untried_node});
+  add_way_home(untried_node);
   return state;
 }
 
@@ -92,6 +94,7 @@ void StateGraph::offer(std::int32_t state, const std::vector<OfferedMove>& offer
   if (states_[state].offered == hash) return;
   states_[state].offered = hash;
   change();
+  std::vector<NodeId> touched;  // ends of edges that may have changed
   std::unordered_map<std::int32_t, std::int32_t> by_name;
   for (StateMove& move : states_[state].moves) {
     by_name.emplace(move.name, static_cast<std::int32_t>(by_name.size()));
@@ -103,8 +106,14 @@ void StateGraph::offer(std::int32_t state, const std::vector<OfferedMove>& offer
     if (fresh) states_[state].moves.push_back({.name = name});
     StateMove& move = states_[state].moves[found->second];
     move.gone = false;
-    if (one.cost) move.cost = *one.cost;
-    if (one.to) lead(state, found->second, states_[see(*one.to, kNoNode)].node);
+    // What is said again as before is no news: what was found out since holds.
+    if (one.cost && *one.cost != move.told_cost) move.cost = move.told_cost = *one.cost;
+    if (!one.to) continue;
+    const NodeId to = states_[see(*one.to, kNoNode)].node;
+    StateMove& told = states_[state].moves[found->second];  // states may have moved
+    if (to == told.told_to) continue;
+    told.told_to = to;
+    touched.push_back(lead(state, found->second, to));
   }
   State& here = states_[state];
   here.untried = 0;
@@ -117,9 +126,17 @@ void StateGraph::offer(std::int32_t state, const std::vector<OfferedMove>& offer
     }
     if (move.untried_node != kNoNode) {
       const int index = view().open().index_of(here.node, move.untried_node);
-      if (view().open().cost(here.node, index) != move.cost) hide(move, state);  // shown again below
+      if (view().open().cost(here.node, index) != move.cost) {
+        discovery_.disconnect(here.node, move.untried_node);
+        discovery_.connect({here.node, move.untried_node, move.cost});
+      }
     }
-    if (move.to != kNoNode) settle_edge(here.node, move.to);
+    touched.push_back(move.to);
+  }
+  std::ranges::sort(touched);
+  touched.erase(std::ranges::unique(touched).begin(), touched.end());
+  for (const NodeId to : touched) {
+    if (to != kNoNode) settle_edge(here.node, to);
   }
   show_more(state);
 }
@@ -134,7 +151,8 @@ void StateGraph::show_more(std::int32_t state) {
     StateMove& move = here.moves[i];
     if (move.untried_node != kNoNode || !worth_trying(move)) continue;
     change();
-    move.untried_node = add_node(1, {.state = state, .move = i});
+    move.untried_node = add_node({.state = state, .move = i});
+    add_way_home(move.untried_node);
     discovery_.connect({here.node, move.untried_node, move.cost});
     ++here.shown;
   }
@@ -153,15 +171,15 @@ void StateGraph::hide(StateMove& move, std::int32_t state) {
   --states_[state].shown;
 }
 
-// A move leads to a state from now on.
-void StateGraph::lead(std::int32_t state, std::int32_t move, NodeId to) {
+// A move leads to a state from now on. Gives where it led before; the edges there are still to be settled.
+NodeId StateGraph::lead(std::int32_t state, std::int32_t move, NodeId to) {
   const NodeId from = states_[state].node;
   const NodeId before = states_[state].moves[move].to;
-  if (before == to) return;
+  if (before == to) return before;
   if (before != kNoNode) std::erase(moves_to_[from_to(from, before)], move);
   states_[state].moves[move].to = to;
   moves_to_[from_to(from, to)].push_back(move);
-  if (before != kNoNode) settle_edge(from, before);
+  return before;
 }
 
 std::int32_t StateGraph::move_to(std::int32_t state, NodeId to) const {
@@ -202,12 +220,15 @@ void StateGraph::settle_edge(NodeId from, NodeId to) {
 
 void StateGraph::done(std::int32_t state, std::int32_t index, std::int32_t to, double cost) {
   const NodeId target = states_[to].node;
+  bool settled = true;  // the edge is as the move was
   {
     State& here = states_[state];
     StateMove& move = here.moves[index];
+    settled = move.to == target && move.cost == cost && !move.waiting && !given_up(move);
     if (worth_trying(move)) --here.untried;
     if (!move.tried) ++tried_count_;
     if (move.to != kNoNode && move.to != target) ++move.surprises;
+    if (move.told_to != kNoNode && move.told_to != target) doubted_.push_back({.state = state, .move = index});
     if (move.untried_node == target) {  // became the state
       move.untried_node = kNoNode;
       --here.shown;
@@ -219,8 +240,9 @@ void StateGraph::done(std::int32_t state, std::int32_t index, std::int32_t to, d
     move.failures = 0;
     move.cost = cost;
   }
-  lead(state, index, target);
-  settle_edge(states_[state].node, target);
+  const NodeId before = lead(state, index, target);
+  if (before != kNoNode && before != target) settle_edge(states_[state].node, before);
+  if (!settled || states_[state].moves[index].surprises >= kMostSurprises) settle_edge(states_[state].node, target);
   show_more(state);
 }
 
@@ -250,17 +272,40 @@ bool StateGraph::retry() {
     if (move.to != kNoNode) settle_edge(here.node, move.to);
     show_more(place.state);
   }
+  // What the client says of a move may be true again.
+  for (const Place& place : std::exchange(doubted_, {})) {
+    const StateMove& move = states_[place.state].moves[place.move];
+    if (move.gone || move.told_to == kNoNode || move.told_to == move.to || move.surprises >= kMostFailures) continue;
+    any = true;
+    const NodeId before = lead(place.state, place.move, move.told_to);
+    settle_edge(states_[place.state].node, before);
+    settle_edge(states_[place.state].node, move.told_to);
+  }
   return any;
 }
 
-void StateGraph::reset_leads_to(std::int32_t state) {
+void StateGraph::reset_done(std::int32_t state, double cost) {
+  if (state == reset_target_ && cost == *reset_cost_) return;
+  change();
   const NodeId before = node(reset_target_);
   reset_target_ = state;
+  reset_cost_ = cost;
+  settle_resets(before);
+  settle_resets(states_[state].node);
+}
+
+void StateGraph::give_up_resets() {
+  change();
+  reset_cost_.reset();
+  settle_resets(node(reset_target_));
+}
+
+// The edges to where resets lead, or led.
+void StateGraph::settle_resets(NodeId target) {
   for (NodeId node = 0; node < view().node_count(); ++node) {
     const Place& place = places_[node];
-    if (place.state < 0 || view().open().index_of(node, before) < 0) continue;
-    settle_edge(node, before);
-    settle_edge(node, states_[state].node);
+    if (place.state < 0) continue;
+    if (way_home_ || (place.move < 0 && states_[place.state].visited)) settle_edge(node, target);
   }
 }
 

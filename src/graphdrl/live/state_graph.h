@@ -25,6 +25,8 @@ struct StateMove {
   NodeId untried_node = kNoNode;  // what stands for its unknown end; kNoNode once it has been tried
   NodeId to = kNoNode;            // the state's node it led to last, or is said to lead to
   double cost = 1;                // what it cost last, or is said to cost
+  NodeId told_to = kNoNode;       // what the client said of it last: where it leads …
+  double told_cost = -1;          // … and what it costs; -1: nothing
   bool tried = false;
   bool gone = false;            // the state does not have it any more
   bool waiting = false;         // it failed, and others come first
@@ -50,6 +52,7 @@ class StateGraph {
     std::int32_t move = -1;  // -1: the state itself
   };
   static constexpr std::int32_t kReset = -2;  // a move's number
+  static constexpr int kMostFailures = 3;     // then a move, or resets, are given up
 
   const Discovery& discovery() const { return discovery_; }
   Discovery& discovery() { return discovery_; }
@@ -89,17 +92,23 @@ class StateGraph {
   // It was not done; it waits. given_up(): it has failed three times.
   void failed(std::int32_t state, std::int32_t move);
   static bool given_up(const StateMove& move) { return move.failures >= kMostFailures; }
-  // Moves that failed and wait can be tried again. False where none waits.
+  // Moves that failed and wait can be tried again, and those that led elsewhere than the client says are believed to
+  // lead there again. False where there are none.
   bool retry();
-  // Resets lead to another state from now on.
-  void reset_leads_to(std::int32_t state);
+  // A reset led to a state, for a cost; so others do from now on.
+  void reset_done(std::int32_t state, double cost);
+  // Resets do not work.
+  void give_up_resets();
+  bool resets() const { return reset_cost_.has_value(); }
+  double reset_cost() const { return *reset_cost_; }  // REQUIRES: resets()
+  // Something changed that policies must know of, as that a step cost more than was said.
+  void change();
 
   // The move by which a step to a node is made: kReset for a reset.
   std::int32_t move_to(std::int32_t state, NodeId node) const;
 
  private:
   static constexpr int kMostUntriedShown = 256;
-  static constexpr int kMostFailures = 3;
   static constexpr int kMostSurprises = 10;  // then no way leads over the move
 
   struct State {
@@ -117,12 +126,12 @@ class StateGraph {
   std::int32_t see(std::string_view name, NodeId untried_node);
   std::int32_t number_of(const std::string& move_name);
   bool worth_trying(const StateMove& move) const;
-  void change();
-  NodeId add_node(double prize, Place place);
+  NodeId add_node(Place place);
+  void add_way_home(NodeId node);
   void show_more(std::int32_t state);
   void hide(StateMove& move, std::int32_t state);
-  void lead(std::int32_t state, std::int32_t move, NodeId to);
-  void settle(std::int32_t state, StateMove& move, std::int32_t index);
+  NodeId lead(std::int32_t state, std::int32_t move, NodeId to);
+  void settle_resets(NodeId target);
   void settle_edge(NodeId from, NodeId to);
 
   Cover cover_;
@@ -137,7 +146,8 @@ class StateGraph {
   std::unordered_map<std::string, std::int32_t> number_of_move_;
   std::unordered_map<std::uint64_t, std::vector<std::int32_t>> moves_to_;  // by from_to(): what led there last
   std::vector<Place> waiting_;                                             // moves that failed
-  bool changed_ = false;                                                   // since the visit began
+  std::vector<Place> doubted_;  // moves that led elsewhere than the client says
+  bool changed_ = false;        // since the visit began
   std::int32_t reset_target_ = -1;
   int visited_count_ = 0;
   std::int64_t tried_count_ = 0;

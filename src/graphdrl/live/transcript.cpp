@@ -99,6 +99,11 @@ LiveRun replay(const std::filesystem::path& path, LiveSession::Record record) {
     }
     try {
       if (line == 1) {
+        if (turn.at("live") != kLiveProtocol) {
+          throw Error({.what = "a transcript of another protocol",
+                       .expected = fmt::format("{}", kLiveProtocol),
+                       .got = shortened(turn.at("live"))});
+        }
         run.session =
             std::make_unique<LiveSession>(parse_live_options(turn.at("options"), LiveOptions()), std::move(record));
         continue;
@@ -124,7 +129,12 @@ LiveRun begin_live(const LiveOptions& options, const TranscriptOptions& wanted) 
     if (*transcript) (*transcript)->add(message, answer);
   };
   LiveRun run;
-  if (wanted.resume) {
+  // A kill before the first line was whole leaves nothing to go on with.
+  const std::string there = wanted.resume ? read_file(wanted.file) : "";
+  const bool begun =
+      there.find('\n') != std::string::npos || !std::string_view(kBegin).starts_with(there.substr(0, kBegin.size()));
+  if (wanted.resume && !begun) std::filesystem::remove(wanted.file);
+  if (wanted.resume && begun) {
     run = replay(wanted.file, record);
     transcript->emplace(wanted.file, wanted.sync);
     return run;

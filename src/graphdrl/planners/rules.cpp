@@ -104,8 +104,9 @@ int FirstVisitPolicy::act_on(const Observation& now) {
 bool FirstVisitPolicy::goes_on(const Trip& trip, const Observation& now) const {
   if (trip.way.empty()) return false;
   if (trip.version == now.view().version()) return true;
+  const int action = now.action_to(trip.way.back());  // edges may be gone
   return now.view().version() - trip.version < held_for_ && !now.ground().contains(trip.way.front()) &&
-         now.affordable(now.action_to(trip.way.back()));
+         action != kNoAction && now.affordable(action);
 }
 
 RulePolicy::RulePolicy(Rule rule, int smallest_part)
