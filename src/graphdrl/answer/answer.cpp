@@ -111,6 +111,9 @@ Answer plan_edges(const World& world, const Task& task, const PlanRequest& reque
   if (!request.reveal.all() || request.own_policy) {
     throw Error({.what = "edges are covered on maps that are known, by planners"});
   }
+  if (request.reset_cost && !world.open().directed()) {
+    throw Error({.what = "resets go with edges that lead one way", .where = world.name()});
+  }
   const Stopwatch watch;
   PlanRequest nodes = request;
   nodes.cover = Cover::kNodes;

@@ -274,7 +274,9 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
   const EdgeKind kind = world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected;
   EdgeCover cover{.walk = {}, .edges = std::ssize(graph.edges)};
   const auto all =
-      postman_walk(graph, kind, world.node_count(), task.start(), {.end = task.end(), .reset_cost = reset_cost});
+      has_too_many_odd_nodes(graph, kind, world.node_count())
+          ? std::nullopt
+          : postman_walk(graph, kind, world.node_count(), task.start(), {.end = task.end(), .reset_cost = reset_cost});
   const EdgePlanner planner(world, task, graph, reset_cost);
   cover.bound = planner.bound();
   if (all && all->cost <= task.limit()) {

@@ -196,6 +196,26 @@ std::optional<EdgeWalk> directed_walk(const Multigraph& graph, const Graph& simp
   return eulerian_walk(graph, /*directed=*/true, count, start, parts, reset_cost);
 }
 
+// The partner of each of an even number of things, so that all pairs together cost least. costs: between any two.
+std::vector<std::size_t> cheapest_pairs(const std::vector<std::vector<std::int64_t>>& costs) {
+  using Weighted = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
+                                         boost::property<boost::edge_weight_t, std::int64_t>>;
+  const std::size_t all = costs.size();
+  std::int64_t dearest = 0;
+  for (const auto& row : costs) dearest = std::max(dearest, *std::ranges::max_element(row));
+  // The most weight with these weights is the most pairs, and of those the least cost. The library halves them.
+  Weighted pairs(all);
+  const std::int64_t pair_weight = (dearest + 1) * static_cast<std::int64_t>(all + 1);
+  for (std::size_t i = 0; i < all; ++i) {
+    for (std::size_t j = i + 1; j < all; ++j) {
+      boost::add_edge(i, j, Weighted::edge_property_type(4 * (pair_weight - costs[i][j])), pairs);
+    }
+  }
+  std::vector<boost::graph_traits<Weighted>::vertex_descriptor> mate(all);
+  boost::maximum_weighted_matching(pairs, mate.data());
+  return {mate.begin(), mate.end()};
+}
+
 std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& simple, NodeId start, NodeId end) {
   const NodeId count = simple.node_count();
   std::vector<bool> odd(count);
@@ -225,7 +245,6 @@ std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& si
   const WholeCosts whole(simple, 0);
   std::vector<NearestFirst> searches(ends.size());
   std::vector<std::vector<std::int64_t>> costs(all, std::vector<std::int64_t>(all, 0));
-  std::int64_t dearest = 0;
   std::vector<std::size_t> place(count);
   for (std::size_t i = 0; i < ends.size(); ++i) place[ends[i]] = i;
   for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -233,25 +252,13 @@ std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& si
     searches[i].run(simple, ends[i], kNoLimit, [&](NodeId node, double cost) {
       if (odd[node]) {
         costs[i][place[node]] = whole.of(cost);
-        dearest = std::max(dearest, whole.of(cost));
         ++reached;
       }
       return NearestFirst::Next::kThrough;
     });
     if (reached < ends.size()) return std::nullopt;
   }
-  // The most weight with these weights is the most pairs, and of those the least cost. The library halves them.
-  using Weighted = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
-                                         boost::property<boost::edge_weight_t, std::int64_t>>;
-  Weighted pairs(all);
-  const std::int64_t pair_weight = (dearest + 1) * static_cast<std::int64_t>(all + 1);
-  for (std::size_t i = 0; i < all; ++i) {
-    for (std::size_t j = i + 1; j < all; ++j) {
-      boost::add_edge(i, j, Weighted::edge_property_type(4 * (pair_weight - costs[i][j])), pairs);
-    }
-  }
-  std::vector<boost::graph_traits<Weighted>::vertex_descriptor> mate(all);
-  boost::maximum_weighted_matching(pairs, mate.data());
+  const std::vector<std::size_t> mate = cheapest_pairs(costs);
   const CheapestEdges cheapest(graph, simple);
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (mate[i] >= all) return std::nullopt;
@@ -266,6 +273,16 @@ std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& si
 }
 
 }  // namespace
+
+bool has_too_many_odd_nodes(const Multigraph& graph, EdgeKind kind, NodeId node_count) {
+  if (kind == EdgeKind::kDirected) return false;
+  std::vector<bool> odd(node_count);
+  for (const Edge& edge : graph.edges) {
+    odd[edge.a] = !odd[edge.a];
+    odd[edge.b] = !odd[edge.b];
+  }
+  return std::ranges::count(odd, true) > kMostOddNodes - 2;  // the ends of a walk are odd, too
+}
 
 std::optional<EdgeWalk> postman_walk(const Multigraph& graph, EdgeKind kind, NodeId node_count, NodeId start,
                                      const PostmanOptions& options) {

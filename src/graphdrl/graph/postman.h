@@ -31,6 +31,7 @@ struct PostmanOptions {
 // Cost: a search for each unit of flow; the cube of the odd nodes, of which kMostOddNodes are taken. Throws Error on
 // more, and on resets of undirected graphs.
 inline constexpr int kMostOddNodes = 500;
+bool has_too_many_odd_nodes(const Multigraph& graph, EdgeKind kind, NodeId node_count);
 std::optional<EdgeWalk> postman_walk(const Multigraph& graph, EdgeKind kind, NodeId node_count, NodeId start,
                                      const PostmanOptions& options);
 

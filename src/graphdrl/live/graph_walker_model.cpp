@@ -156,7 +156,8 @@ class ModelReader {
               std::initializer_list<const char*> keys) const {
     for (const char* const key : keys) {
       const auto found = element.find(key);
-      if (found == element.end() || found->empty() || *found == "" || found->is_null()) continue;
+      if (found == element.end() || found->empty()) continue;
+      if (found->is_string() && found->get_ref<const std::string&>().empty()) continue;
       throw Error({.what = fmt::format("{} \"{}\" has {}, which are not run", kind, escaped(name), key),
                    .expected = "a model without guards, actions and shared states",
                    .where = place_});

@@ -134,7 +134,7 @@ void StateGraph::offer(std::int32_t state, const std::vector<OfferedMove>& offer
     touched.push_back(move.to);
   }
   std::ranges::sort(touched);
-  touched.erase(std::ranges::unique(touched).begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   for (const NodeId to : touched) {
     if (to != kNoNode) settle_edge(here.node, to);
   }

@@ -77,7 +77,7 @@ std::string LiveRun::note() const {
 
 namespace {
 
-LiveRun replay(const std::filesystem::path& path, LiveSession::Record record) {
+LiveRun replay(const std::filesystem::path& path, const LiveSession::Record& record) {
   const std::string source = escaped(path.string());
   const std::string text = read_file(path);
   if (!is_transcript(text)) throw Error({.what = "no transcript", .where = source});
@@ -104,8 +104,7 @@ LiveRun replay(const std::filesystem::path& path, LiveSession::Record record) {
                        .expected = fmt::format("{}", kLiveProtocol),
                        .got = shortened(turn.at("live"))});
         }
-        run.session =
-            std::make_unique<LiveSession>(parse_live_options(turn.at("options"), LiveOptions()), std::move(record));
+        run.session = std::make_unique<LiveSession>(parse_live_options(turn.at("options"), LiveOptions()), record);
         continue;
       }
       ++run.turns;
