@@ -188,7 +188,7 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
                 .plan = {},
                 .reveal = request.reveal,
                 .score = request.score,
-                .until_covered = request.until_covered};
+                .until_covered = request.until_covered || !task.has_budget()};
   const auto [planner, policy] = choose(request, world, answer.policy);
   const bool bounds = planner != nullptr && planner->bounds();
   const double bound = bounds || request.score == Score::kSeen ? kNoLimit : max_prize(task, bound_clock);

@@ -72,7 +72,7 @@ Json plan_of(const Answer& answer) {
   Json json = {{"policy", answer.policy},
                {"walk", answer.plan.walk},
                {"visited", answer.plan.visited},
-               {"budget", answer.task.budget()},
+               {"budget", answer.until_covered ? Json() : Json(answer.task.budget())},
                {"optimal", answer.plan.optimal}};
   if (!answer.discovered.nodes.empty()) {
     json["reveal"] = answer.reveal.text();
