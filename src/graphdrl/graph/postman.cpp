@@ -64,14 +64,14 @@ class CheapestEdges {
   std::vector<std::vector<std::int64_t>> edge_;  // as the neighbours of simple_
 };
 
-// A flow of least cost in a network with many sources and sinks.
+// A flow of least cost in a network with many sources and sinks. Costs are whole numbers as doubles: the library adds
+// up the costs of nodes that it cannot reach, for which whole numbers have no infinity.
 class LeastCostFlow {
   using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
-  using Properties =
-      boost::property<boost::edge_capacity_t, std::int64_t,
-                      boost::property<boost::edge_residual_capacity_t, std::int64_t,
-                                      boost::property<boost::edge_reverse_t, Traits::edge_descriptor,
-                                                      boost::property<boost::edge_weight_t, std::int64_t>>>>;
+  using Properties = boost::property<boost::edge_capacity_t, std::int64_t,
+                                     boost::property<boost::edge_residual_capacity_t, std::int64_t,
+                                                     boost::property<boost::edge_reverse_t, Traits::edge_descriptor,
+                                                                     boost::property<boost::edge_weight_t, double>>>>;
   using Network = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS, boost::no_property, Properties>;
 
  public:
@@ -79,7 +79,7 @@ class LeastCostFlow {
 
   explicit LeastCostFlow(int nodes) : network_(nodes + 2), source_(nodes), sink_(nodes + 1) {}
 
-  Arc add(int from, int to, std::int64_t capacity, std::int64_t cost) {
+  Arc add(int from, int to, std::int64_t capacity, double cost) {
     const Arc arc = boost::add_edge(from, to, network_).first;
     const Arc back = boost::add_edge(to, from, network_).first;
     put(arc, back, capacity, cost);
@@ -104,7 +104,7 @@ class LeastCostFlow {
   }
 
  private:
-  void put(const Arc& arc, const Arc& back, std::int64_t capacity, std::int64_t cost) {
+  void put(const Arc& arc, const Arc& back, std::int64_t capacity, double cost) {
     boost::put(boost::edge_capacity, network_, arc, capacity);
     boost::put(boost::edge_reverse, network_, arc, back);
     boost::put(boost::edge_weight, network_, arc, cost);
@@ -171,12 +171,12 @@ std::optional<EdgeWalk> directed_walk(const Multigraph& graph, const Graph& simp
   for (NodeId node = 0; node < count; ++node) {
     for (int i = 0; i < simple.degree(node); ++i) {
       const NodeId next = simple.neighbours(node)[i];
-      arcs.push_back({.arc = flow.add(node, next, most, whole.of(simple.cost(node, i))),
+      arcs.push_back({.arc = flow.add(node, next, most, static_cast<double>(whole.of(simple.cost(node, i)))),
                       .part = {node, next, cheapest.edge(node, next)}});
     }
     if (options.reset_cost && node != start) {
-      arcs.push_back(
-          {.arc = flow.add(node, start, most, whole.of(reset_cost)), .part = {node, start, EdgeWalk::kResetEdge}});
+      arcs.push_back({.arc = flow.add(node, start, most, static_cast<double>(whole.of(reset_cost))),
+                      .part = {node, start, EdgeWalk::kResetEdge}});
     }
     if (options.end == kNoNode) flow.add(node, end, 1, 0);
   }
