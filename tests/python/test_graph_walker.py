@@ -90,4 +90,4 @@ def test_altwalker_covers_all_edges(name, tmp_path):
     rng = random.Random(1)
     simulated = sorted(steps_of_random_walk(name, rng) for _ in range(200))
     assert len(path) < simulated[len(simulated) // 20], "fewer steps than nineteen of twenty random walks"
-    print(name, len(path), sum(simulated) / len(simulated))
+    print(name, len(path), sum(simulated) / len(simulated))  # the table of docs/live.md, by pytest -s

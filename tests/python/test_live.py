@@ -123,7 +123,7 @@ def test_a_transcript_is_a_replay(run, tmp_path):
     before = file.read_bytes()
     assert run("graphdrl", "report", file, "-o", tmp_path / "page.html").returncode == 0
     page = (tmp_path / "page.html").read_text(encoding="utf-8")
-    assert "seen_after_step" in page or "s6" in page
+    assert '"s6"' in page and '"policy":"novelty"' in page
     assert file.read_bytes() == before
 
 

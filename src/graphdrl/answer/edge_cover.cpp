@@ -156,7 +156,11 @@ class EdgePlanner {
   }
 
   // A node in the middle of each edge, worth 1; other nodes are worth nothing. REQUIRES: directed.
-  EdgeWalk planned(const std::function<Plan(const World&, const Task&)>& plan_nodes) const {
+  struct Planned {
+    EdgeWalk walk;
+    double bound;  // on its edges
+  };
+  Planned planned(const std::function<Plan(const World&, const Task&)>& plan_nodes) const {
     const NodeId nodes = world_.node_count();
     const auto middle = [&](std::size_t edge) { return nodes + static_cast<NodeId>(edge); };
     GraphMap map;
@@ -192,10 +196,8 @@ class EdgePlanner {
         walk.cost += *reset_cost_;
       }
     }
-    planned_bound_ = plan.optimal ? plan.prize : plan.bound;
-    return walk;
+    return {.walk = std::move(walk), .bound = plan.optimal ? plan.prize : plan.bound};
   }
-  double planned_bound() const { return planned_bound_; }  // after planned()
 
   // As many of the cheapest edges that can be reached as the budget pays for.
   double bound() const {
@@ -251,7 +253,6 @@ class EdgePlanner {
   bool directed_;
   double limit_;
   std::vector<std::vector<std::int64_t>> leaving_;  // [N], edges that lead on from a node
-  mutable double planned_bound_ = kNoLimit;
 };
 
 }  // namespace
@@ -296,8 +297,9 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
       for (std::int64_t i = 0; i < tries; ++i) walks.push_back(planner.greedy({}, kNoise, rng));
     }
     if (kind == EdgeKind::kDirected) {
-      walks.push_back(planner.planned(plan_nodes));
-      cover.bound = std::min(cover.bound, planner.planned_bound());
+      auto [walk, bound] = planner.planned(plan_nodes);
+      walks.push_back(std::move(walk));
+      cover.bound = std::min(cover.bound, bound);
     }
     const auto rank = [&](const EdgeWalk& walk) { return std::pair(planner.different(walk), -walk.cost); };
     cover.walk = *std::ranges::max_element(walks, {}, rank);

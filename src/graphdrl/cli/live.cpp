@@ -15,9 +15,7 @@
 namespace graphdrl {
 namespace {
 
-constexpr std::size_t kLongestLine = std::size_t{64} << 20;  // a million moves with names of sixty bytes
-
-// The lines of standard input. A line longer than kLongestLine is skipped: its text is then cut and `cut` true.
+// The lines of standard input. A line longer than kLongestLiveMessage is skipped: its text is then cut and `cut` true.
 class InputLines {
  public:
   bool next() {
@@ -37,7 +35,7 @@ class InputLines {
       const std::string_view rest(buffer_.data() + at_, filled_ - at_);
       const std::size_t end = rest.find('\n');
       const std::string_view more = rest.substr(0, end);
-      if (line_.size() + more.size() > kLongestLine) {
+      if (line_.size() + more.size() > kLongestLiveMessage) {
         cut_ = true;
       } else if (!cut_) {
         line_ += more;
@@ -57,9 +55,7 @@ class InputLines {
   bool cut_ = false;
 };
 
-}  // namespace
-
-LiveOptions live_options_of(const LiveArguments& arguments, const LiveRequest& request) {
+LiveOptions options_of(const LiveArguments& arguments, const LiveRequest& request) {
   LiveOptions options{.cover = parse_cover(arguments.cover), .reset_cost = arguments.reset_cost};
   if (!request.budget.empty()) {
     const Budget budget = Budget::parse(request.budget);
@@ -80,6 +76,8 @@ LiveOptions live_options_of(const LiveArguments& arguments, const LiveRequest& r
   options.seed = request.seed;
   return options;
 }
+
+}  // namespace
 
 void add_live_options(CLI::App& command, LiveArguments& live) {
   CLI::Option* const flag = command.add_flag(
@@ -103,7 +101,7 @@ void add_live_options(CLI::App& command, LiveArguments& live) {
 }
 
 void explore_live(const LiveArguments& arguments, const LiveRequest& request) {
-  const LiveOptions options = live_options_of(arguments, request);
+  const LiveOptions options = options_of(arguments, request);
   for (const std::string& file : request.out) check_live_file(file);
   const LiveRun run =
       begin_live(options, {.file = arguments.transcript, .sync = arguments.sync, .resume = arguments.resume});
@@ -114,7 +112,7 @@ void explore_live(const LiveArguments& arguments, const LiveRequest& request) {
   InputLines lines;
   while (lines.next()) {
     if (lines.cut()) {
-      print_text(fmt::format("{{\"error\":\"a line of more than {} MiB\"}}\n", kLongestLine >> 20));
+      print_text(fmt::format("{{\"error\":\"a line of more than {} MiB\"}}\n", kLongestLiveMessage >> 20));
     } else if (lines.line().find_first_not_of(" \t\r") != std::string::npos) {
       print_text(session->answer(lines.line()) + '\n');
     }

@@ -1,7 +1,7 @@
 // `graphdrl explore --live`: an exploration that a client drives over standard input and output.
 #pragma once
 
-#include <memory>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

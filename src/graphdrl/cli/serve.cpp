@@ -30,7 +30,7 @@ void serve(const ServeOptions& options) {
   if (!options.model.empty()) {
     models = parse_walker_models(read_file(options.model[0]), escaped(options.model[0]), options.model[1]);
   }
-  HttpServer server(options.port, {.body_bytes = std::size_t{64} << 20});
+  HttpServer server(options.port, {.body_bytes = kLongestLiveMessage});
   const ExplorationService service(
       server, LiveOptions(),
       {.explorations = options.explorations,

@@ -240,9 +240,7 @@ HttpAnswer GraphWalkerService::load(const HttpRequest& request) {
   std::vector<WalkerModel> models = parse_walker_models(request.body, "the models");
   models_ = std::move(models);
   begin();
-  return ok(
-      {{"note", fmt::format("walks are planned, not drawn at random: {} is edge or vertex coverage by a short walk",
-                            models_.front().generator.name)}});
+  return ok({{"note", fmt::format("{} is replaced: walks are planned", models_.front().generator.name)}});
 }
 
 HttpAnswer GraphWalkerService::has_next(const HttpRequest& /*request*/) {

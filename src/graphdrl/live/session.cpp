@@ -228,8 +228,7 @@ ordered_json LiveSession::step_json(const LiveStep& step) const {
   return answer;
 }
 
-// told: the step of a transcript; null to choose one.
-ordered_json LiveSession::take(const json& message, const LiveStep* told) {
+ordered_json LiveSession::take(const json& message) {
   if (message.is_object() && message.contains("open")) {
     check_fields(message, {"id", "open"}, "");
     open(message.at("open"));
@@ -239,7 +238,6 @@ ordered_json LiveSession::take(const json& message, const LiveStep* told) {
   if (!exploration_) open(json::object());
   exploration_->observe(seen);  // throws before anything changes
   broken_ = "the exploration has failed";
-  if (told != nullptr) exploration_->next_was(*told);
   const LiveStep& step = exploration_->next();
   broken_.clear();
   done_ = step.kind == LiveStep::Kind::kDone;
@@ -279,7 +277,7 @@ std::string LiveSession::answer(std::string_view text) {
       refused_ = false;
       if (const std::string* const before = answered(id)) return *before;
     }
-    answer = take(message, nullptr);
+    answer = take(message);
     taken = true;
   } catch (const FieldError& error) {
     answer = error_json(error.what(), error.field());
@@ -310,26 +308,21 @@ bool LiveSession::replay(std::string_view text, std::string_view told) {
   const json answer = parse_json(told, "");
   if (!answer.is_object() || !message.is_object()) throw Error({.what = "no message with its answer"});
   std::string id;
-  if (message.is_object() && message.contains("id")) id = message.at("id").dump();
+  if (message.contains("id")) id = message.at("id").dump();
   keep(id, std::string(told));
   last_answer_ = told;
-  if (message.is_object() && message.contains("open")) {
-    take(message, nullptr);
+  if (message.contains("open")) {
+    take(message);
     return true;
   }
   const LiveStep step = step_of(answer);
   if (!exploration_) open(json::object());
-  bool same = true;
-  if (exploration_->options().think_s == kNoLimit) {
-    const LiveStep chosen = (exploration_->observe(observation_of(message)), exploration_->next());
-    same = chosen.kind == step.kind && chosen.move == step.move;
-    if (!same) exploration_->next_was(step);
-  } else {
-    exploration_->observe(observation_of(message));
-    exploration_->next_was(step);
-  }
+  exploration_->observe(observation_of(message));
   done_ = step.kind == LiveStep::Kind::kDone;
-  return same;
+  const bool chooses = exploration_->options().think_s == kNoLimit;  // as it did then
+  const bool same = chooses && exploration_->next().kind == step.kind && exploration_->next().move == step.move;
+  if (!same) exploration_->next_was(step);
+  return same || !chooses;
 }
 
 std::optional<std::string> LiveSession::close() const {

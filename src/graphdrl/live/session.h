@@ -15,6 +15,7 @@
 namespace graphdrl {
 
 inline constexpr int kLiveProtocol = 1;
+inline constexpr std::size_t kLongestLiveMessage = std::size_t{64} << 20;  // bytes: a million moves with names of sixty
 
 // The options of an exploration as an `open` message has them. Throws Error on an unknown field, and on a bad value.
 LiveOptions parse_live_options(const nlohmann::json& open, const LiveOptions& defaults);
@@ -63,7 +64,7 @@ class LiveSession {
     std::string answer;
   };
 
-  nlohmann::ordered_json take(const nlohmann::json& message, const LiveStep* told);
+  nlohmann::ordered_json take(const nlohmann::json& message);
   void open(const nlohmann::json& options);
   nlohmann::ordered_json step_json(const LiveStep& step) const;
   const std::string* answered(const std::string& id) const;

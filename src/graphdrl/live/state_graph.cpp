@@ -272,6 +272,7 @@ bool StateGraph::retry() {
     if (move.to != kNoNode) settle_edge(here.node, move.to);
     show_more(place.state);
   }
+  if (any) return true;
   // What the client says of a move may be true again.
   for (const Place& place : std::exchange(doubted_, {})) {
     const StateMove& move = states_[place.state].moves[place.move];

@@ -46,7 +46,8 @@ class StateGraph {
   // walk must be able to end at the first state.
   StateGraph(Cover cover, std::optional<double> reset_cost, bool way_home);
 
-  // What a state's index means: [states()]. Moves are numbered by state, in the order in which they were offered.
+  // States have numbers in the order in which they were heard of, and moves numbers of their state in the order in
+  // which they were offered.
   struct Place {
     std::int32_t state = -1;
     std::int32_t move = -1;  // -1: the state itself
@@ -92,8 +93,8 @@ class StateGraph {
   // It was not done; it waits. given_up(): it has failed three times.
   void failed(std::int32_t state, std::int32_t move);
   static bool given_up(const StateMove& move) { return move.failures >= kMostFailures; }
-  // Moves that failed and wait can be tried again, and those that led elsewhere than the client says are believed to
-  // lead there again. False where there are none.
+  // Moves that failed and wait can be tried again; where there are none, those that led elsewhere than the client says
+  // are believed to lead there again. False where there are none of these either.
   bool retry();
   // A reset led to a state, for a cost; so others do from now on.
   void reset_done(std::int32_t state, double cost);
