@@ -65,10 +65,24 @@ void FirstVisitPolicy::act(std::span<const Observation> observations, std::span<
   for (std::size_t i = 0; i < observations.size(); ++i) actions[i] = act_on(observations[i]);
 }
 
+// The trip of a walk, with the step that is next; null where there is none. Walks may be asked for once more from where
+// they were before.
+FirstVisitPolicy::Trip* FirstVisitPolicy::trip_of(const Observation& now) {
+  for (Trip& trip : trips_) {
+    if (trip.hashes[trip.next] == now.walk_hash && trip.view == now.view()) return &trip;
+  }
+  for (Trip& trip : trips_) {
+    const auto before = std::ranges::find(trip.hashes, now.walk_hash);
+    if (before == trip.hashes.end() || !(trip.view == now.view())) continue;
+    trip.next = static_cast<std::size_t>(before - trip.hashes.begin());
+    return &trip;
+  }
+  return nullptr;
+}
+
 int FirstVisitPolicy::act_on(const Observation& now) {
-  auto trip = std::ranges::find_if(
-      trips_, [&](const Trip& one) { return one.hash == now.walk_hash && one.view == now.view(); });
-  if (trip == trips_.end() || !goes_on(*trip, now)) {
+  Trip* trip = trip_of(now);
+  if (trip == nullptr || !holds(*trip, now)) {
     const Exploration exploration(now, now.ground());
     NodeId goal = choose(exploration, now);
     if (goal == kNoNode) {
@@ -79,34 +93,36 @@ int FirstVisitPolicy::act_on(const Observation& now) {
       });
       goal = end;
     }
-    if (trip == trips_.end() && trips_.size() < kMostTrips) {
-      trip = trips_.insert(trips_.end(), Trip{.view = now.view(), .version = 0, .hash = 0});
-    } else if (trip == trips_.end()) {
-      trip = trips_.begin() + static_cast<std::ptrdiff_t>(oldest_++ % kMostTrips);
+    if (trip == nullptr && trips_.size() < kMostTrips) {
+      trip = &trips_.emplace_back(Trip{.view = now.view(), .version = 0});
+    } else if (trip == nullptr) {
+      trip = &trips_[oldest_++ % kMostTrips];
       trip->view = now.view();
     }
     trip->version = now.view().version();
     trip->way.clear();
     search_.append_path_to(goal, trip->way);
-    std::ranges::reverse(trip->way);
+    trip->hashes.assign(1, now.walk_hash);
+    for (const NodeId node : trip->way) trip->hashes.push_back(extended_walk_hash(trip->hashes.back(), node));
+    trip->next = 0;
   }
-  const NodeId next = trip->way.back();
-  trip->way.pop_back();
-  trip->hash = extended_walk_hash(now.walk_hash, next);
-  const int action = now.action_to(next);
+  const int action = now.action_to(trip->way[trip->next++]);
   if (action == kNoAction || !now.affordable(action))
     throw std::logic_error("a policy takes a step that cannot be taken");
   return action;
 }
 
-// What was chosen is held for some first visits although more becomes known, while it is no ground and the next step
-// can be paid for.
-bool FirstVisitPolicy::goes_on(const Trip& trip, const Observation& now) const {
-  if (trip.way.empty()) return false;
+// What was chosen is held for some first visits although more becomes known, while it is no ground, the way is there
+// and the next step can be paid for.
+bool FirstVisitPolicy::holds(const Trip& trip, const Observation& now) const {
+  if (trip.next == trip.way.size()) return false;
   if (trip.version == now.view().version()) return true;
-  const int action = now.action_to(trip.way.back());  // edges may be gone
-  return now.view().version() - trip.version < held_for_ && !now.ground().contains(trip.way.front()) &&
-         action != kNoAction && now.affordable(action);
+  if (now.view().version() - trip.version >= held_for_ || now.ground().contains(trip.way.back())) return false;
+  NodeId from = now.position;
+  for (std::size_t step = trip.next; step < trip.way.size(); from = trip.way[step++]) {
+    if (now.view().open().index_of(from, trip.way[step]) < 0) return false;
+  }
+  return now.affordable(now.action_to(trip.way[trip.next]));
 }
 
 RulePolicy::RulePolicy(Rule rule, int smallest_part)

@@ -27,14 +27,16 @@ class FirstVisitPolicy : public Policy {
  private:
   // Under way to what was chosen.
   struct Trip {
-    View view;                     // of the walk: walks of unknown maps may have the same numbers
-    std::uint64_t version;         // of what was known then
-    std::uint64_t hash;            // of the walk so far
-    std::vector<NodeId> way = {};  // what is left of it, the next step last, the goal first
+    View view;                               // of the walk: walks of unknown maps may have the same numbers
+    std::uint64_t version;                   // of what was known then
+    std::vector<NodeId> way = {};            // up to the goal
+    std::vector<std::uint64_t> hashes = {};  // [way + 1], of the walk before each step, and at the goal
+    std::size_t next = 0;                    // the step after the one that was asked for last
   };
 
+  Trip* trip_of(const Observation& now);
   int act_on(const Observation& now);
-  bool goes_on(const Trip& trip, const Observation& now) const;
+  bool holds(const Trip& trip, const Observation& now) const;
 
   std::uint64_t held_for_;
   NearestFirst search_;
