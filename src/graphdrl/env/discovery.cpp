@@ -188,7 +188,8 @@ void Discovery::connect(const Edge& edge, const Graph::Places& places) {
   if (!known.open.directed()) shorten(edge.b, (*to_end_)[edge.a] + edge.cost);
 }
 
-void Discovery::disconnect(NodeId from, NodeId to) {
+// Gives whether the edge was on ways to the end.
+bool Discovery::remove(NodeId from, NodeId to) {
   Known& known = *known_;
   const double cost = known.open.cost(from, known.open.index_of(from, to));
   known.open.remove_edge(from, to);
@@ -202,15 +203,26 @@ void Discovery::disconnect(NodeId from, NodeId to) {
     known.frontier_neighbours[from] -= known.frontier[to];
     known.frontier_neighbours[to] -= known.frontier[from];
   }
-  if (to_end_ != nullptr) lengthen(from, to, cost);
+  if (to_end_ == nullptr) return false;
+  const std::vector<double>& costs = *to_end_;
+  const auto is_on_way = [&](NodeId a, NodeId b) { return costs[b] < kNoLimit && costs[a] == cost + costs[b]; };
+  return is_on_way(from, to) || (!known.open.directed() && is_on_way(to, from));
 }
 
-// An edge is gone that may have been on ways to the end.
-void Discovery::lengthen(NodeId from, NodeId to, double cost) {
+void Discovery::disconnect(NodeId from, NodeId to) {
+  if (remove(from, to)) lengthen(from);
+}
+
+void Discovery::disconnect(std::span<const std::pair<NodeId, NodeId>> edges) {
+  bool any = false;
+  for (const auto& [from, to] : edges) any = remove(from, to) || any;
+  if (any) *to_end_ = costs_to(view_.into(), end_);
+}
+
+// An edge that leaves a node is gone that was on ways to the end.
+void Discovery::lengthen(NodeId from) {
   std::vector<double>& costs = *to_end_;
-  const auto is_on_way = [&](NodeId a, NodeId b) { return costs[b] < kNoLimit && costs[a] == cost + costs[b]; };
   const Graph& open = known_->open;
-  if (!is_on_way(from, to) && (open.directed() || !is_on_way(to, from))) return;
   if (!open.directed() || view_.into().degree(from) > 0 || from == end_) {
     costs = costs_to(view_.into(), end_);
     return;
@@ -233,6 +245,16 @@ void Discovery::forget(NodeId node) {
   known.total_prize -= view_.prize(node);
   if (!known.prizes.empty()) known.prizes[node] = 0;
   if (known.frontier[node]) leave_frontier(node);
+}
+
+void Discovery::see_again(NodeId node) {
+  Known& known = *known_;
+  known.total_prize += 1;
+  known.frontier[node] = true;
+  known.seen_at[node] = static_cast<std::uint32_t>(known.version);
+  ++known.frontier_count;
+  known.recent.push_back(node);
+  for (const NodeId next : view_.both_ways().neighbours(node)) ++known.frontier_neighbours[next];
 }
 
 void Discovery::leave_frontier(NodeId node) {

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "graphdrl/base/random.h"
@@ -88,13 +90,16 @@ class Discovery {
   // Makes an edge between nodes seen known; does nothing where it is. Frontier nodes at its ends are seen again.
   // places: as Graph::add_edge().
   void connect(const Edge& edge, const Graph::Places& places = {});
-  // An edge between two nodes is there no more.
+  // An edge between two nodes is there no more; of many at once the costs kept are looked up once.
   void disconnect(NodeId from, NodeId to);
+  void disconnect(std::span<const std::pair<NodeId, NodeId>> edges);
   // All edges of the node are known now: it is no frontier any more.
   void close(NodeId node);
   // What was seen turned out to be a node that was known before: the node, which must have no edges any more, is worth
   // nothing, and no frontier.
   void forget(NodeId node);
+  // A node that was forgotten is there again, on the frontier. REQUIRES: no node has a prize of its own.
+  void see_again(NodeId node);
   // What is shown from here on is a later visit's.
   void begin_visit() { ++known_->version; }
 
@@ -106,7 +111,8 @@ class Discovery {
   void count(NodeId node);
   void leave_frontier(NodeId node);
   void shorten(NodeId from, double cost);
-  void lengthen(NodeId from, NodeId to, double cost);
+  bool remove(NodeId from, NodeId to);
+  void lengthen(NodeId from);
 
   std::shared_ptr<Known> known_;
   View view_;

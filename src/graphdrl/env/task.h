@@ -28,6 +28,8 @@ class Budget {
   static Budget parse(std::string_view text);
 
   double cost_in(const View& view) const;
+  // The same; empty where it depends on the world.
+  std::optional<double> cost() const { return relative_ ? std::nullopt : std::optional(value_); }
   const std::string& text() const { return text_; }  // as it was given
 
  private:

@@ -22,6 +22,7 @@ class NodeSet {
 
   bool contains(NodeId node) const { return (words_[node / 64] >> (node % 64) & 1) != 0; }
   void insert(NodeId node) { words_[node / 64] |= std::uint64_t{1} << (node % 64); }
+  void erase(NodeId node) { words_[node / 64] &= ~(std::uint64_t{1} << (node % 64)); }
   // REQUIRES: both are over the same nodes.
   void insert_all(const NodeSet& other) {
     for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= other.words_[i];
