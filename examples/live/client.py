@@ -26,13 +26,16 @@ class Guide:
 
     def next_step(self, state, moves, failed=False):
         """Says where we are, and whether the last step failed. Gives {"move": …}, {"reset": true} or {"done": …}."""
-        message = {"state": state, "moves": list(moves), "failed": failed}
+        return self.answer({"state": state, "moves": list(moves), "failed": failed})
+
+    def answer(self, message):
+        """What it says to a message. Ends this program where that is an error."""
         try:
             print(json.dumps(message), file=self.program.stdin, flush=True)
             answer = json.loads(self.program.stdout.readline())
         except (BrokenPipeError, ValueError):
             answer = {"error": "graphdrl has ended"}
-        if "move" not in answer and "reset" not in answer:
+        if "done" in answer or "error" in answer:
             self.program.communicate()  # lets it end, and write its files; where it cannot it has said why
             if self.program.returncode:
                 sys.exit(self.program.returncode)

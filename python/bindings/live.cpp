@@ -1,4 +1,6 @@
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <variant>
 
 #include "bindings.h"
 #include "graphdrl/base/error.h"
@@ -40,7 +42,10 @@ void bind_live(nb::module_& module) {
       .def_prop_ro("last_answer", [](const LiveRun& run) { return run.session->last_answer(); })
       .def("report", [](const LiveRun& run) { return live_report_json(begun(run).report()).dump(); })
       .def("plan", [](const LiveRun& run) { return begun(run).answer("live"); })
-      .def("world", [](const LiveRun& run) { return World("live", begun(run).map()); })
+      .def("world",
+           [](const LiveRun& run) {
+             return std::visit([](auto map) { return World("live", std::move(map)); }, begun(run).map());
+           })
       .def(
           "save",
           [](const LiveRun& run, const std::string& file) {

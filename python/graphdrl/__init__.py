@@ -1,7 +1,7 @@
 """Visit as many nodes of a graph as a budget allows: plans with bounds, on any graph or map."""
 
 from ._core import FAMILIES, Error, MachineError, State, __version__, threads
-from .live import LiveExploration, Move, Step
+from .live import Cells, LiveExploration, Move, Step
 from .planning import Plan, evaluate, explore, plan, set_threads, upper_bound
 from .policies import Explorer, FirstVisits, PaperNetwork, Policy
 from .registration import register_environments
@@ -10,6 +10,7 @@ from .world import World
 
 __all__ = [
     "FAMILIES",
+    "Cells",
     "Error",
     "Explorer",
     "FirstVisits",

@@ -7,6 +7,8 @@ import os
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from . import _core
 from ._core import Error
 from .checks import flag, listed, number, path_text, text, whole_number, wrong
@@ -24,8 +26,19 @@ class Move(NamedTuple):
     """What it costs; None for what it cost last, or 1."""
 
 
+class Cells(NamedTuple):
+    """Cells that a sensor saw, as ROS's OccupancyGrid and OccupancyGridUpdate have them."""
+
+    data: Any
+    """Rows from the bottom, as lists or an array: -1, or how likely a cell is blocked, in percent."""
+    origin: tuple[float, float]
+    """x and y of the lower left corner."""
+    resolution: float
+    """A side of a cell, in the unit of x and y."""
+
+
 class Step(NamedTuple):
-    """What to do next: one of `move`, `reset` and `done` is set."""
+    """What to do next: one of `move`, `reset`, `goto` and `done` is set."""
 
     move: str | None = None
     """The move to do."""
@@ -35,14 +48,16 @@ class Step(NamedTuple):
     """Why there is nothing to do: `covered`, `budget` or `unreachable`."""
     expects: str | None = None
     """The state that the step should lead to, where that is known."""
+    goto: tuple[tuple[float, float], ...] | None = None
+    """The way to go: centres of cells, the goal last."""
 
 
 class LiveExploration:
-    """An exploration of something that can say in which state it is, and which moves it has.
+    """An exploration of what can say in which state it is and which moves it has, or which cells it sees.
 
-    Tell where it is by `observe`, do what `next` says, and so on. The steps are those of `graphdrl explore --live` for
-    the same observations; docs/live.md says what is promised. Any number may be under way, each in one thread at a
-    time.
+    Tell where it is by `observe`, of cells by `observe_cells`; do what `next` says, and so on. The steps are those of
+    `graphdrl explore --live` for the same observations; docs/live.md says what is promised. Any number may be under
+    way, each in one thread at a time.
     """
 
     __slots__ = ("_core", "_step")
@@ -54,7 +69,9 @@ class LiveExploration:
         budget: float | None = None,
         end: str = "anywhere",
         reset_cost: float | None = None,
-        policy: str = "novelty",
+        score: str | None = None,
+        connectivity: int = 8,
+        policy: str = "",
         think_time: float | None = None,
         seed: int = 1,
         transcript: str | os.PathLike[str] | None = None,
@@ -66,9 +83,11 @@ class LiveExploration:
         Args:
             cover: what counts, states (`nodes`) or each move of each state (`edges`).
             budget: what may be spent, of the costs that are observed; None for no limit.
-            end: where to end, `anywhere` or at the `start`, the first state.
+            end: where to end, `anywhere` or at the `start`, the first state or cell.
             reset_cost: what it costs to go back to the first state at once; None where that cannot be done.
-            policy: `novelty`, or a policy of unknown maps by name.
+            score: of cells what counts, those `seen` (None) or those `visited`.
+            connectivity: of cells, whether steps lead to 4 or to 8 others.
+            policy: `novelty`, or a policy of unknown maps by name; empty for the default.
             think_time: seconds for each choice, of policies that plan.
             seed: of the search and of random policies.
             transcript: a file in which each observation and its step are written down.
@@ -83,6 +102,8 @@ class LiveExploration:
             "budget": None if budget is None else number(budget, "budget"),
             "end": text(end, "end"),
             "reset_cost": None if reset_cost is None else number(reset_cost, "reset_cost"),
+            "score": None if score is None else text(score, "score"),
+            "connectivity": whole_number(connectivity, "connectivity"),
             "policy": text(policy, "policy"),
             "think_time": None if think_time is None else number(think_time, "think_time"),
             "seed": whole_number(seed, "seed"),
@@ -117,10 +138,45 @@ class LiveExploration:
         message: dict[str, Any] = {"state": text(state, "state")}
         if moves is not None:
             message["moves"] = [_move(move) for move in listed(moves, "moves", "a list of moves")]
-        if cost is not None:
-            message["cost"] = number(cost, "cost")
         if prize is not None:
             message["prize"] = number(prize, "prize")
+        self._tell(message, cost, failed)
+
+    def observe_cells(
+        self,
+        at: tuple[float, float],
+        cells: Cells | None = None,
+        *,
+        cost: float | None = None,
+        failed: bool = False,
+    ) -> None:
+        """Says where a robot is now, and what it has seen since.
+
+        Args:
+            at: x and y.
+            cells: what it has seen since; the first time there must be some.
+            cost: what the way cost that it went since; None for its length.
+            failed: whether the goal cannot be reached.
+
+        Raises:
+            Error: a bad argument; nothing has changed then.
+        """
+        message: dict[str, Any] = {"at": _point(at, "at")}
+        if cells is not None:
+            if not isinstance(cells, tuple) or len(cells) != 3:
+                raise wrong("cells", "Cells", cells)
+            data, origin, resolution = cells
+            message["cells"] = {
+                "origin": _point(origin, "origin"),
+                "resolution": number(resolution, "resolution"),
+                **_grid(data),
+            }
+        self._tell(message, cost, failed)
+
+    def _tell(self, message: dict[str, Any], cost: float | None, failed: bool) -> None:
+        """Sends an observation."""
+        if cost is not None:
+            message["cost"] = number(cost, "cost")
         if flag(failed, "failed"):
             message["failed"] = True
         answer = self._core.answer(json.dumps(message))
@@ -147,7 +203,7 @@ class LiveExploration:
         return json.loads(self._core.report())
 
     def world(self) -> World:
-        """The map discovered, a directed graph; states are nodes, by name.
+        """The map discovered: a directed graph whose nodes are states, by name; or cells.
 
         Raises:
             Error: nothing was observed yet.
@@ -167,7 +223,8 @@ class LiveExploration:
         """Writes the map discovered, or the walk through it.
 
         Args:
-            path: ends with .graphml, .dot or .json for the map, or as those of `Plan.save` for the walk.
+            path: ends with .graphml, .gml, .dot or .json for the map, of cells with .txt, .map or .pgm, too; or as
+                those of `Plan.save` for the walk.
 
         Raises:
             Error: an ending that is not known, a file that cannot be written; nothing was observed yet.
@@ -178,9 +235,29 @@ class LiveExploration:
 def _step(answer: str) -> Step | None:
     """What an answer of the protocol says; None where there is none."""
     said = json.loads(answer) if answer else {}
-    if not said.keys() & {"move", "reset", "done"}:
+    if not said.keys() & {"move", "reset", "goto", "done"}:
         return None
-    return Step(said.get("move"), said.get("reset", False), said.get("done"), said.get("expects"))
+    goto = tuple(tuple(point) for point in said["goto"]) if "goto" in said else None
+    return Step(said.get("move"), said.get("reset", False), said.get("done"), said.get("expects"), goto)
+
+
+def _grid(data: Any) -> dict[str, Any]:
+    """Rows of cells as a message has them."""
+    try:
+        grid = np.asarray(data)
+    except ValueError as error:  # rows of different lengths
+        raise wrong("data", "rows of whole numbers", data) from error
+    if grid.ndim != 2 or grid.dtype.kind not in "iu":
+        raise wrong("data", "rows of whole numbers", data)
+    return {"width": grid.shape[1], "height": grid.shape[0], "data": grid.ravel().tolist()}
+
+
+def _point(point: Any, name: str) -> list[float]:
+    """As a message has it."""
+    values = listed(point, name, "x and y")
+    if len(values) != 2:
+        raise wrong(name, "x and y", point)
+    return [number(value, name) for value in values]
 
 
 def _move(move: Any) -> str | dict[str, Any]:

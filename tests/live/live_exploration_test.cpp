@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "graphdrl/base/random.h"
@@ -408,10 +409,10 @@ TEST(LiveExploration, BelievesWhatItFoundOutUntilTheClientSaysOtherwise) {
   std::vector<OfferedMove> more = moves;
   more.push_back({.name = "o", .to = "c"});
   exploration.observe({.state = "a", .moves = more});
-  ASSERT_EQ(exploration.map().multigraph->edges[0].cost, 50);
+  ASSERT_EQ(std::get<GraphMap>(exploration.map()).multigraph->edges[0].cost, 50);
   more[0].cost = 2;
   exploration.observe({.state = "a", .moves = more});
-  EXPECT_EQ(exploration.map().multigraph->edges[0].cost, 2);
+  EXPECT_EQ(std::get<GraphMap>(exploration.map()).multigraph->edges[0].cost, 2);
 }
 
 TEST(LiveExploration, IsAMapWithAWalk) {
@@ -421,7 +422,7 @@ TEST(LiveExploration, IsAMapWithAWalk) {
   drive(exploration, machine);
   const Answer answer = exploration.answer("machine");
   EXPECT_EQ(answer.world.node_count(), 8);
-  EXPECT_EQ(std::ssize(exploration.map().multigraph->edges), machine.transitions());
+  EXPECT_EQ(std::ssize(std::get<GraphMap>(exploration.map()).multigraph->edges), machine.transitions());
   EXPECT_EQ(answer.plan.visited, 8);
   EXPECT_EQ(answer.discovered.after_step.size(), answer.plan.walk.size());
   for (std::size_t i = 1; i < answer.plan.walk.size(); ++i) {

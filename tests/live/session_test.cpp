@@ -32,6 +32,29 @@ TEST(LiveSession, AnswersMessages) {
   EXPECT_EQ(session.close(), std::nullopt);
 }
 
+TEST(LiveSession, SendsARobotThroughCells) {
+  LiveSession session({});
+  EXPECT_EQ(session.answer(R"({"id":0,"open":{"score":"seen","connectivity":4,"end":"start"}})"),
+            R"({"id":0,"ok":true,"protocol":1})");
+  EXPECT_EQ(session.answer(R"({"id":1,"at":[3.2,1.5],"cells":{"origin":[3,1],"resolution":0.5,"width":3,"height":3,)"
+                           R"("data":[100,100,100,0,0,-1,100,100,-1]}})"),
+            R"({"id":1,"goto":[[3.75,1.75]]})");
+  EXPECT_EQ(session.answer(R"({"id":2,"at":[3.75,1.75],"failed":true})"), R"({"id":2,"goto":[[3.25,1.75]]})");
+  EXPECT_EQ(session.exploration()->report().cells->failed.size(), 1u);
+  for (const auto& [message, expected] : std::vector<std::pair<const char*, const char*>>{
+           {R"({"state":"a"})", "one of cells"},
+           {R"({"at":[1]})", "[x, y]"},
+           {R"({"at":[0,0],"moves":[]})", "an unknown field"},
+           {R"({"at":[0,0],"cells":{"origin":[0,0]}})", "resolution is missing"},
+           {R"({"at":[0,0],"cells":{"origin":[3,1],"resolution":0.5,"width":1,"height":1,"data":[101]}})", "-1 to 100"},
+           {R"({"at":[0,0],"cells":{"origin":[3,1],"resolution":0.5,"width":-1,"height":1,"data":[]}})", "width"},
+           {R"({"at":[0,0],"cells":{"origin":[3,1],"resolution":0.5,"width":2,"height":1,"data":[1]}})", "2 × 1"},
+       }) {
+    EXPECT_THAT(session.answer(message), HasSubstr(expected)) << message;
+    EXPECT_TRUE(session.refused()) << message;
+  }
+}
+
 TEST(LiveSession, GivesTheSameAnswerToARepeatedId) {
   LiveSession session({});
   const std::string first = session.answer(R"({"id":1,"state":"a","moves":["x","y"]})");

@@ -8,6 +8,7 @@ import signal
 import subprocess
 
 import graphdrl
+import numpy
 import pytest
 
 from conftest import BIN, ROOT
@@ -64,7 +65,7 @@ def outcome(state, answer):
 def test_the_page_shows_conversations_as_they_are():
     text = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```text\n(.*?)```", text, re.DOTALL)
-    assert len(blocks) == 2
+    assert len(blocks) == 3
     for block in blocks:
         lines = block.replace("\n  ", "").splitlines()
         answers, _ = conversation([line[2:] for line in lines if line.startswith(">")])
@@ -133,6 +134,7 @@ def test_what_is_wrong_gets_one_line(tmp_path):
     assert json.loads(answers[2]) == {"id": 1, "move": "x"}
     assert "reset-cost" in refusal("explore", "--live", "--reset-cost", "-1")
     assert "--live" in refusal("explore", "--live", "paper:a")
+    assert "--live" in refusal("explore", "--live", "--robot-radius", "1")
     assert "a budget in units of cost" in refusal("explore", "--live", "--budget", "1.1x")
     assert "anywhere or start" in refusal("explore", "--live", "--end", "7")
     assert "no such policy" in refusal("explore", "--live", "--policy", "best")
@@ -187,6 +189,58 @@ def test_python_walks_as_the_program(tmp_path):
     assert graphdrl.World.from_file(tmp_path / "map.graphml").node_count == 7
     again = graphdrl.LiveExploration(transcript=tmp_path / "t.jsonl", resume=True)
     assert again.report() == live.report() and again.next() == live.next()
+
+
+CORRIDOR = [[100, 100, 100, 100, 100], [0, 0, 0, -1, -1], [100, 100, 100, 100, 100]]  # rows from the bottom
+
+
+def test_python_goes_through_cells_as_the_program(tmp_path):
+    live = graphdrl.LiveExploration(end="start", transcript=tmp_path / "t.jsonl")
+    client = Client("--end", "start")
+    rest = [[100, 100, 100], [-1, 0, 100], [100, 100, 100]]
+    walls = {"origin": [-0.5, 0], "resolution": 0.5, "width": 1, "height": 3, "data": [100, 100, 100]}
+    assert client.ask({"at": [0.1, 0.6], "cells": walls})["done"] == "covered"  # nothing is known beside it
+    live.observe_cells((0.1, 0.6), graphdrl.Cells([[100]] * 3, (-0.5, 0), 0.5))
+    for rows, x in ((CORRIDOR, 0), (rest, 1)):
+        cells = {"origin": [x, 0], "resolution": 0.5, "width": len(rows[0]), "height": 3, "data": sum(rows, [])}
+        at = [x + 0.1, 0.6]
+        answer = client.ask({"at": at, "cells": cells})
+        live.observe_cells(at, graphdrl.Cells(numpy.array(rows), (x, 0), 0.5))
+        assert answer["goto"] == [list(point) for point in live.next().goto]
+    assert live.next() == graphdrl.Step(goto=((0.75, 0.75), (0.25, 0.75)))  # all is seen: home
+    answer = client.ask({"at": [0.25, 0.75]})
+    live.observe_cells([0.25, 0.75])
+    assert answer["done"] == live.next().done == "covered"
+    assert answer["report"] == live.report()
+    assert live.report() == {
+        "steps": 2, "cost": 2.0, "at": [0.25, 0.75], "seen": 4, "visited": 3, "left": 0, "changed": 0, "failed": [],
+    }  # fmt: skip
+    client.close()
+    for name in ("map.txt", "map.pgm", "map.json", "map.graphml", "map.map"):
+        live.save(tmp_path / name)
+        assert graphdrl.World.from_file(tmp_path / name).node_count in (4, 18)
+    live.save(tmp_path / "walk.html")
+    again = graphdrl.LiveExploration(transcript=tmp_path / "t.jsonl", resume=True)
+    assert again.report() == live.report() and again.next() == live.next()
+
+
+def test_python_says_what_is_wrong_with_cells():
+    live = graphdrl.LiveExploration()
+    for wrong, says in [
+        (lambda: live.observe_cells((0, 0)), "the cells around"),
+        (lambda: live.observe_cells(7, None), "x and y"),
+        (lambda: live.observe_cells((0, 0), [[0]]), "Cells"),
+        (lambda: live.observe_cells((0, 0), graphdrl.Cells([[0], [0, 0]], (0, 0), 1)), "rows of whole numbers"),
+        (lambda: live.observe_cells((0, 0), graphdrl.Cells([[0.5]], (0, 0), 1)), "rows of whole numbers"),
+        (lambda: live.observe_cells((0, 0), graphdrl.Cells([[101]], (0, 0), 1)), "from -1 to 100"),
+        (lambda: live.observe_cells((0, 0), graphdrl.Cells([[100]], (0, 0), 1)), "no free cell"),
+        (lambda: graphdrl.LiveExploration(connectivity=6), "4 or 8"),
+        (lambda: graphdrl.LiveExploration(score="best"), "visited or seen"),
+    ]:
+        with pytest.raises(graphdrl.Error, match=says):
+            wrong()
+    live.observe_cells((0, 0), graphdrl.Cells([[0]], (0, 0), 1))
+    assert live.next().done
 
 
 def test_python_says_what_is_wrong(tmp_path):

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -130,12 +131,33 @@ def test_a_shop_that_runs_elsewhere_is_explored_from_any_page(browser, tmp_path)
     assert refused.returncode == 1 and refused.stderr == f"{url}help/returns: there is no such page\n"
 
 
+# --- A robot -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("policy", ["tour", "nearest"])
+def test_a_robot_sees_the_whole_floor(policy, tmp_path):
+    floor = ROOT / "examples" / "2-ros" / "floor.yaml"
+    lines = run_example("robot.py", floor, "--policy", policy, "--out", "floor.html", folder=tmp_path)
+    ends = re.fullmatch(r"covered after ([0-9.]+) m: 4803 of 4803 free cells seen", lines[0])
+    assert 60 < float(ends[1]) < 90
+    assert (tmp_path / "floor.html").exists()
+
+
+def test_a_robot_comes_home_within_its_budget(tmp_path):
+    floor = ROOT / "examples" / "2-ros" / "floor.yaml"
+    done = start_example("robot.py", floor, "--budget", "30", "--end", "start", "--out", "seen.txt", folder=tmp_path)
+    assert done.returncode == 1
+    assert re.match(r"budget after (29|30)\.\d m", done.stdout)
+    seen = (tmp_path / "seen.txt").read_text()
+    assert f"{seen.count('.')} of 4803 free cells seen" in done.stdout
+
+
 # --- What goes wrong ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["machine.py", "menus.py", "web.py"])
+@pytest.mark.parametrize("name", ["machine.py", "menus.py", "robot.py", "web.py"])
 def test_one_line_says_that_the_program_is_missing(name, machine, tmp_path):
-    arguments = [machine] if name == "machine.py" else []
+    arguments = [machine] if name in ("machine.py", "robot.py") else []
     done = start_example(name, *arguments, folder=tmp_path, GRAPHDRL_BIN=str(tmp_path))
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"{tmp_path / 'graphdrl'}: No such file or directory\n"

@@ -58,19 +58,21 @@ class InputLines {
 LiveOptions options_of(const LiveArguments& arguments, const LiveRequest& request) {
   LiveOptions options{.cover = parse_cover(arguments.cover), .reset_cost = arguments.reset_cost};
   if (!request.budget.empty()) {
-    const Budget budget = Budget::parse(request.budget);
-    if (request.budget.back() == 'x') {
+    const std::optional<double> budget = Budget::parse(request.budget).cost();
+    if (!budget) {
       throw Error({.what = "how many states there are is not known",
                    .expected = "a budget in units of cost",
                    .got = in_quotes(request.budget),
                    .where = "--budget"});
     }
-    options.budget = budget.cost_in(Discovery("live", EdgeKind::kDirected).view());
+    options.budget = *budget;
   }
   if (!request.end.empty() && request.end != "anywhere" && request.end != "start") {
     throw Error({.what = "bad end", .expected = "anywhere or start", .got = in_quotes(request.end), .where = "--end"});
   }
   options.end_at_start = request.end == "start";
+  if (!request.score.empty()) options.score = parse_score(request.score);
+  options.connectivity = request.connectivity;
   options.policy = request.policy;
   if (request.think_s) options.think_s = *request.think_s;
   options.seed = request.seed;
@@ -84,7 +86,7 @@ void add_live_options(CLI::App& command, LiveArguments& live) {
       "--live", live.live,
       "No map: a client says on standard input where it is and which moves it has there, a JSON object a line, and is "
       "told on standard output what to do next (docs/live.md)");
-  const auto only_live = [&](CLI::Option* option) { option->needs(flag)->group("With --live"); };
+  const auto only_live = [&](CLI::Option* option) { option->needs(flag)->group(kWithLive); };
   only_live(
       command.add_option("--cover", live.cover, "What counts: states (nodes), or each move of each state (edges)")
           ->check(CLI::IsMember({"nodes", "edges"}))

@@ -25,11 +25,15 @@ struct LiveArguments {
 struct LiveRequest {
   std::string budget;
   std::string end;
+  std::string score;  // empty where it was not given
+  int connectivity = 8;
   std::string policy;
   std::optional<double> think_s;
   std::uint64_t seed = 1;
   std::vector<std::string> out;
 };
+
+inline constexpr const char* kWithLive = "With --live";  // the group of these options
 
 // Adds the options that only --live has.
 void add_live_options(CLI::App& command, LiveArguments& live);

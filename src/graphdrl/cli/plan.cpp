@@ -87,7 +87,7 @@ void plan(const PlanOptions& options) {
   Asked asked = asked_of(world, options.asked);
   const bool until_covered = !options.until.empty();
   const bool edges = parse_cover(options.cover) == Cover::kEdges;
-  if (edges && !options.asked.budget.empty() && options.asked.budget.back() == 'x') {
+  if (edges && asked.budget && !asked.budget->cost()) {
     throw Error({.what = "a multiple is of nodes, and edges count here",
                  .expected = "a budget in units of cost, or none",
                  .got = in_quotes(options.asked.budget),
@@ -234,16 +234,23 @@ void add_explore_command(CLI::App& app) {
   command.get_option("map")->required(false);
   command.callback([options, &command] {
     if (options->live.live) {
-      for (const char* const other : {"map", "--start", "--reveal", "--score", "--believed", "--until", "--price",
-                                      "--time-limit", "--json", "--walk"}) {
-        if (command.get_option(other)->count() > 0) throw CLI::ExcludesError("--live", other);
+      for (const CLI::Option* const option : command.get_options()) {
+        constexpr std::array kOthers = {"--budget", "--end", "--policy",     "--score",   "--connectivity",
+                                        "--seed",   "--out", "--think-time", "--threads", "--memory-limit"};
+        const bool goes_with = option->get_group() == kWithLive || option->get_name() == "--live" ||
+                               std::ranges::find(kOthers, option->get_name()) != kOthers.end();
+        if (option->count() > 0 && !goes_with) throw CLI::ExcludesError("--live", option->get_name());
       }
-      return explore_live(options->live, {.budget = options->asked.budget,
-                                          .end = options->asked.end,
-                                          .policy = options->request.policy,
-                                          .think_s = options->think_time_s,
-                                          .seed = options->request.seed,
-                                          .out = options->out});
+      const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
+      return explore_live(options->live,
+                          {.budget = options->asked.budget,
+                           .end = options->asked.end,
+                           .score = given("--score") ? options->score : "",
+                           .connectivity = given("--connectivity") ? options->reading.diagonals ? 8 : 4 : 8,
+                           .policy = options->request.policy,
+                           .think_s = options->think_time_s,
+                           .seed = options->request.seed,
+                           .out = options->out});
     }
     if (options->map.empty()) throw CLI::RequiredError("map");
     plan(*options);

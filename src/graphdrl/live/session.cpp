@@ -70,10 +70,67 @@ std::vector<OfferedMove> moves_of(const json& moves) {
   return offered;
 }
 
+double number_of(const json& object, const char* field) {
+  const json& value = object.at(field);
+  if (!value.is_number()) {
+    throw FieldError(field, {.what = "bad value", .expected = "a number", .got = shortened(value)});
+  }
+  return value.get<double>();
+}
+
+Point point_of(const json& object, const char* field) {
+  const json& value = object.at(field);
+  const bool good = value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number();
+  if (!good) throw FieldError(field, {.what = "bad value", .expected = "[x, y]", .got = shortened(value)});
+  return {value[0].get<double>(), value[1].get<double>()};
+}
+
+int count_of(const json& object, const char* field) {
+  const json& value = object.at(field);
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > CellGraph::kMostCells) {
+    throw FieldError(field, {.what = "bad value",
+                             .expected = fmt::format("a whole number from 0 to {}", CellGraph::kMostCells),
+                             .got = shortened(value)});
+  }
+  return value.get<int>();
+}
+
+CellPatch patch_of(const json& cells) {
+  check_fields(cells, {"origin", "resolution", "width", "height", "data"}, "cells");
+  for (const char* const field : {"origin", "resolution", "width", "height", "data"}) {
+    if (!cells.contains(field)) throw FieldError("cells", {.what = fmt::format("{} is missing", field)});
+  }
+  CellPatch patch{.origin = point_of(cells, "origin"),
+                  .resolution = number_of(cells, "resolution"),
+                  .width = count_of(cells, "width"),
+                  .height = count_of(cells, "height")};
+  const json& data = cells.at("data");
+  if (!data.is_array()) throw FieldError("data", {.what = "bad value", .expected = "a list", .got = shortened(data)});
+  patch.data.reserve(data.size());
+  for (const json& value : data) {
+    const bool good = value.is_number_integer() && value >= -1 && value <= 100;
+    if (!good) {
+      throw FieldError("data",
+                       {.what = "bad value", .expected = "whole numbers from -1 to 100", .got = shortened(value)});
+    }
+    patch.data.push_back(value.get<std::int8_t>());
+  }
+  return patch;
+}
+
 LiveObservation observation_of(const json& message) {
-  check_fields(message, {"id", "state", "cost", "prize", "moves", "failed", "explorer"}, "");
-  if (!message.contains("state")) throw FieldError("state", {.what = "a message says where the client is, or opens"});
-  LiveObservation seen{.state = text_of(message, "state")};
+  if (message.is_object() && message.contains("at")) {
+    check_fields(message, {"id", "at", "cells", "cost", "failed", "explorer"}, "");
+  } else {
+    check_fields(message, {"id", "state", "cost", "prize", "moves", "failed", "explorer"}, "");
+    if (!message.contains("state")) {
+      throw FieldError("state", {.what = "a message says where the client is, or opens"});
+    }
+  }
+  LiveObservation seen;
+  if (message.contains("state")) seen.state = text_of(message, "state");
+  if (message.contains("at")) seen.at = point_of(message, "at");
+  if (message.contains("cells")) seen.cells = patch_of(message.at("cells"));
   if (message.contains("cost")) seen.cost = amount_of(message, "cost");
   if (message.contains("prize")) seen.prize = amount_of(message, "prize");
   if (message.contains("failed")) seen.failed = truth_of(message, "failed");
@@ -99,6 +156,9 @@ LiveStep step_of(const json& answer) {
     step.move = text_of(answer, "move");
   } else if (answer.contains("reset")) {
     step.kind = LiveStep::Kind::kReset;
+  } else if (answer.contains("goto")) {
+    step.kind = LiveStep::Kind::kGoto;
+    for (const json& point : answer.at("goto")) step.way.push_back(point_of({{"goto", point}}, "goto"));
   } else {
     if (!answer.contains("done")) throw Error({.what = "an answer without a step"});
     const std::string done = text_of(answer, "done");
@@ -113,10 +173,10 @@ LiveStep step_of(const json& answer) {
 }  // namespace
 
 LiveOptions parse_live_options(const json& open, const LiveOptions& defaults) {
-  check_fields(
-      open,
-      {"protocol", "cover", "directed", "budget", "end", "reset_cost", "policy", "think_time", "seed", "explorers"},
-      "open");
+  check_fields(open,
+               {"protocol", "cover", "score", "connectivity", "directed", "budget", "end", "reset_cost", "policy",
+                "think_time", "seed", "explorers"},
+               "open");
   LiveOptions options = defaults;
   const auto only = [&](const char* field, const json& value) {
     if (!open.contains(field) || open.at(field) == value) return;
@@ -126,6 +186,17 @@ LiveOptions parse_live_options(const json& open, const LiveOptions& defaults) {
   only("directed", true);  // moves lead one way
   only("explorers", 1);
   if (open.contains("cover")) options.cover = parse_cover(text_of(open, "cover"));
+  if (open.contains("score")) {
+    options.score.reset();
+    if (!open.at("score").is_null()) options.score = parse_score(text_of(open, "score"));
+  }
+  if (open.contains("connectivity")) {
+    const json& count = open.at("connectivity");
+    if (count != 4 && count != 8) {
+      throw FieldError("connectivity", {.what = "bad value", .expected = "4 or 8", .got = shortened(count)});
+    }
+    options.connectivity = count.get<int>();
+  }
   if (open.contains("budget")) {
     options.budget = open.at("budget").is_null() ? kNoLimit : amount_of(open, "budget");
   }
@@ -159,8 +230,12 @@ LiveOptions parse_live_options(const json& open, const LiveOptions& defaults) {
 
 ordered_json live_options_json(const LiveOptions& options) {
   const auto limit = [](double value) { return value == kNoLimit ? ordered_json() : ordered_json(value); };
+  ordered_json score;
+  if (options.score) score = *options.score == Score::kSeen ? "seen" : "visited";
   return {{"protocol", kLiveProtocol},
           {"cover", options.cover == Cover::kNodes ? "nodes" : "edges"},
+          {"score", score},
+          {"connectivity", options.connectivity},
           {"budget", limit(options.budget)},
           {"end", options.end_at_start ? "start" : "anywhere"},
           {"reset_cost", options.reset_cost ? ordered_json(*options.reset_cost) : ordered_json()},
@@ -169,7 +244,27 @@ ordered_json live_options_json(const LiveOptions& options) {
           {"seed", options.seed}};
 }
 
+namespace {
+
+ordered_json point_json(const Point& point) {
+  return ordered_json::array({point.x, point.y});
+}
+
+ordered_json cells_report_json(const LiveReport& report) {
+  const LiveReport::Cells& cells = *report.cells;
+  ordered_json failed = ordered_json::array();
+  for (const auto& [goal, failures] : cells.failed) {
+    failed.push_back({{"goto", point_json(goal)}, {"failures", failures}});
+  }
+  return {{"steps", report.steps},    {"cost", report.cost},        {"at", point_json(cells.at)},
+          {"seen", cells.seen},       {"visited", cells.visited},   {"left", cells.left},
+          {"changed", cells.changed}, {"failed", std::move(failed)}};
+}
+
+}  // namespace
+
 ordered_json live_report_json(const LiveReport& report) {
+  if (report.cells) return cells_report_json(report);
   ordered_json failed = ordered_json::array();
   for (const auto& [state, move, failures] : report.failed) {
     if (move.empty()) {
@@ -218,6 +313,10 @@ ordered_json LiveSession::step_json(const LiveStep& step) const {
       break;
     case LiveStep::Kind::kReset:
       answer["reset"] = true;
+      break;
+    case LiveStep::Kind::kGoto:
+      answer["goto"] = ordered_json::array();
+      for (const Point& point : step.way) answer["goto"].push_back(point_json(point));
       break;
     case LiveStep::Kind::kDone:
       answer["done"] = name_of(step.done);
@@ -320,7 +419,8 @@ bool LiveSession::replay(std::string_view text, std::string_view told) {
   exploration_->observe(observation_of(message));
   done_ = step.kind == LiveStep::Kind::kDone;
   const bool chooses = exploration_->options().think_s == kNoLimit;  // as it did then
-  const bool same = chooses && exploration_->next().kind == step.kind && exploration_->next().move == step.move;
+  const bool same = chooses && exploration_->next().kind == step.kind && exploration_->next().move == step.move &&
+                    exploration_->next().way == step.way;
   if (!same) exploration_->next_was(step);
   return same || !chooses;
 }

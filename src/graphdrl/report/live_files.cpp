@@ -1,5 +1,7 @@
 #include "graphdrl/report/live_files.h"
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "graphdrl/io/file.h"
@@ -12,7 +14,8 @@ namespace {
 
 bool holds_a_map(const std::string& file) {
   const std::string ending = std::filesystem::path(file).extension().string();
-  return ending == ".graphml" || ending == ".dot" || ending == ".json";
+  constexpr std::array kEndings = {".graphml", ".dot", ".json", ".gml", ".pgm", ".map", ".txt"};
+  return std::ranges::find(kEndings, ending) != kEndings.end();
 }
 
 }  // namespace
