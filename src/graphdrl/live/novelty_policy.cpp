@@ -7,14 +7,16 @@
 namespace graphdrl {
 namespace {
 
-// Tuned on fourteen machines of others, none of those in the table of docs/live.md. Half or twice as large each costs
-// at most 1.4 % more steps to all states there, kMemory from 0.9 to 0.975 as much; kStrandedWeight doubled costs 3 %.
+// Tuned on fifteen machines of others, none of those in the table of docs/live.md: what they cost there is in it, too.
 constexpr double kNamePrior = 16;        // tries of the general share that a name begins with
 constexpr double kStatePrior = 8;        // likewise a state
 constexpr double kTargetWeight = 0.1;    // of a state that moves of a name led to, known or not
 constexpr double kMemory = 0.95;         // of what came of a name, with each later try
 constexpr double kStrandedWeight = 0.3;  // of the way from where a name leads to the next untried move
 constexpr double kFarthestStranded = 3;  // mean edges; farther ways count like that
+constexpr double kOnceFound = 0.3;       // of the general share, where names find something once: those that have …
+constexpr double kNeverFound = 1.3;      // … and those that have not
+constexpr double kClearlyBetter = 1.1;   // so many times; else the nearer move, or the one offered first
 constexpr double kLeastChance = 0.001;
 constexpr double kMostChance = 0.99;
 constexpr double kAsNear = 1 + 1e-9;
@@ -25,16 +27,19 @@ std::array<double, NoveltyPolicy::kModels> NoveltyPolicy::chances(std::int32_t s
   const double general = (all_.found + 1) / (all_.tries + 2);
   double by_name = general;
   double by_state = general;
+  double once = kNeverFound * general;
   if (name < std::ssize(by_name_)) {
     const Named& named = by_name_[name];
     by_name =
         (named.recent.found + kTargetWeight * named.targets + kNamePrior * general) / (named.recent.tries + kNamePrior);
+    if (named.has_found) once = kOnceFound * general;
   }
   if (state < std::ssize(by_state_)) {
     const Tries& here = by_state_[state];
     by_state = (here.found + kStatePrior * general) / (here.tries + kStatePrior);
   }
-  std::array<double, kModels> chances = {general, by_name, by_state, by_name * by_state / general};
+  std::array<double, kModels> chances = {
+      general, by_name, once, by_state, by_name * by_state / general, once * by_state / general};
   for (double& chance : chances) chance = std::clamp(chance, kLeastChance, kMostChance);
   return chances;
 }
@@ -61,6 +66,7 @@ void NoveltyPolicy::learn(std::int32_t state, std::int32_t move, std::int32_t to
   by_state_.resize(std::max<std::size_t>(by_state_.size(), state + 1));
   const double found = is_new ? 1 : 0;
   Named& named = by_name_[name];
+  named.has_found = named.has_found || is_new;
   named.recent = {.tries = named.recent.tries * kMemory + 1, .found = named.recent.found * kMemory + found};
   for (Tries* const tries : {&all_, &by_state_[state]}) {
     tries->tries += 1;
@@ -128,7 +134,8 @@ NodeId NoveltyPolicy::choose(const Exploration& now, const Observation& /*observ
       rank = states ? std::tuple((cost + kStrandedWeight * lost) / chance(place.state, name), 0.0, 0)
                     : std::tuple(nearest, lost, -graph_->untried_count(place.state));
     }
-    if (best == kNoNode || rank < least) {
+    const bool better = states ? std::get<0>(rank) * kClearlyBetter < std::get<0>(least) : rank < least;
+    if (best == kNoNode || better) {
       best = node;
       least = rank;
     }

@@ -12,9 +12,10 @@
 namespace graphdrl {
 
 // Where states count: the move with the greatest chance of a new state for its cost, the way there among it. The chance
-// is a mixture of four estimates: the share of moves that led to a new state so far, that of moves of this name, that
-// of moves of this state, and the product of the two. They are weighed by how well each has foretold what came
-// [Bayesian mixture]. Moves of a name that leads to where nothing is left to try cost more by a share of the way back.
+// is a mixture of six estimates: the share of moves that led to a new state so far; that of moves of this name; one by
+// which a name finds something once; and each of these three times what moves of this state found. They are weighed by
+// how well each has foretold what came [Bayesian mixture]. Moves of a name that leads to where nothing is left to try
+// cost more by a share of the way back. A move that is not clearly better than a nearer one waits.
 //
 // Where transitions count: the nearest untried move; of equally near ones the one that leads least often to where
 // nothing is left, then that of the state with most of them.
@@ -31,7 +32,7 @@ class NoveltyPolicy final : public FirstVisitPolicy {
  private:
   static constexpr int kMostOutcomes = 16;
   static constexpr int kMostCandidates = 512;
-  static constexpr int kModels = 4;
+  static constexpr int kModels = 6;
 
   struct Tries {
     double tries = 0;
@@ -40,6 +41,7 @@ class NoveltyPolicy final : public FirstVisitPolicy {
   // Of moves of one name.
   struct Named {
     Tries recent;                                       // each counts for less with every later one
+    bool has_found = false;                             // at any time
     int targets = 0;                                    // different states that they led to
     int outcomes = 0;                                   // of all times …
     std::array<std::int32_t, kMostOutcomes> last = {};  // … the last ones: states; -1 where the state was the same
