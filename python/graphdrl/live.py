@@ -24,6 +24,8 @@ class Move(NamedTuple):
     """The state that it leads to, if that can be seen."""
     cost: float | None = None
     """What it costs; None for what it cost last, or 1."""
+    tried: bool = False
+    """Whether it was done before, as in an earlier run, and does not count any more."""
 
 
 class Cells(NamedTuple):
@@ -66,6 +68,7 @@ class LiveExploration:
         self,
         *,
         cover: str = "nodes",
+        directed: bool = True,
         budget: float | None = None,
         end: str = "anywhere",
         reset_cost: float | None = None,
@@ -82,6 +85,7 @@ class LiveExploration:
 
         Args:
             cover: what counts, states (`nodes`) or each move of each state (`edges`).
+            directed: whether moves lead one way; else each leads back, too, by a move of the same name.
             budget: what may be spent, of the costs that are observed; None for no limit.
             end: where to end, `anywhere` or at the `start`, the first state or cell.
             reset_cost: what it costs to go back to the first state at once; None where that cannot be done.
@@ -99,6 +103,7 @@ class LiveExploration:
         """
         options = {
             "cover": text(cover, "cover"),
+            "directed": flag(directed, "directed"),
             "budget": None if budget is None else number(budget, "budget"),
             "end": text(end, "end"),
             "reset_cost": None if reset_cost is None else number(reset_cost, "reset_cost"),
@@ -264,7 +269,7 @@ def _move(move: Any) -> str | dict[str, Any]:
     """As a message has it."""
     if isinstance(move, str):
         return text(move, "moves")
-    if not isinstance(move, tuple) or not 1 <= len(move) <= 3:
+    if not isinstance(move, tuple) or not 1 <= len(move) <= 4:
         raise wrong("moves", "names or Moves", move)
     one = Move(*move)
     made: dict[str, Any] = {"move": text(one.name, "moves")}
@@ -272,4 +277,6 @@ def _move(move: Any) -> str | dict[str, Any]:
         made["to"] = text(one.to, "moves")
     if one.cost is not None:
         made["cost"] = number(one.cost, "moves")
+    if flag(one.tried, "tried"):
+        made["tried"] = True
     return made

@@ -103,9 +103,70 @@ World with_resets(const World& world, const EdgeWalk& walk, double reset_cost) {
   }
   if (edges.size() == before) return world;
   GraphMap map = world.to_map();
+  map.multigraph = std::make_shared<const Multigraph>(all_edges(map));  // which resets are none of
   map.graph = Graph::from_edges(world.node_count(), edges, EdgeKind::kDirected);
   return World(world.name(), std::move(map));
 }
+
+std::vector<std::string> edge_summary(const Answer& answer) {
+  const EdgeCover& edges = *answer.edges;
+  const auto resets = std::ranges::count(edges.walk.edges, EdgeWalk::kResetEdge);
+  std::string first =
+      fmt::format("walked {} of {} edges, {:.1f} %, for {}{}", edges.walked, edges.edges,
+                  edges.percent(static_cast<double>(edges.walked)), decimal(edges.walk.cost),
+                  answer.until_covered ? "" : fmt::format(" of a budget of {}", decimal(answer.task.budget())));
+  if (resets > 0) first += fmt::format(", {} reset{} among it", resets, resets == 1 ? "" : "s");
+  std::vector<std::string> lines = {std::move(first)};
+  if (!answer.reveal.all()) {
+    lines.push_back(
+        fmt::format("seen {} of {} nodes, {:.1f} %", answer.discovered.nodes.size(), answer.world.valid_count(),
+                    100.0 * static_cast<double>(answer.discovered.nodes.size()) / answer.world.valid_count()));
+  }
+  if (answer.known) {
+    const auto price = answer.price_of_ignorance();
+    lines.push_back(fmt::format("a walk that knows the map has {} edges for {}{}", decimal(answer.known->prize),
+                                decimal(answer.known->cost),
+                                price ? fmt::format(": the price of ignorance is {:.3f}", *price) : ""));
+  }
+  if (edges.all_cheapest) {
+    lines.emplace_back("optimal: no walk over all edges is cheaper");
+  } else if (static_cast<double>(edges.walked) >= edges.bound) {
+    lines.emplace_back("optimal: no walk has more edges");
+  } else {
+    lines.push_back(fmt::format("no walk has more than {} edges, {:.1f} %: the gap is {:.1f} points",
+                                decimal(edges.bound), edges.percent(edges.bound),
+                                edges.percent(edges.bound - static_cast<double>(edges.walked))));
+  }
+  if (answer.unreachable > 0) {
+    lines.push_back(fmt::format("{} node{} cannot be reached from the start", answer.unreachable,
+                                answer.unreachable == 1 ? "" : "s"));
+  }
+  return lines;
+}
+
+}  // namespace
+
+Answer edge_answer(const World& world, const Task& task, EdgeCover cover, const std::string& policy) {
+  Answer answer{.world = with_resets(world, cover.walk, cover.reset_cost.value_or(0)),
+                .task = task,
+                .policy = policy,
+                .plan = {},
+                .until_covered = !task.has_budget()};
+  std::vector<bool> visited(world.node_count());
+  for (const NodeId node : cover.walk.nodes) {
+    if (answer.plan.walk.empty() || answer.plan.walk.back() != node) answer.plan.walk.push_back(node);
+    if (visited[node]) continue;
+    visited[node] = true;
+    ++answer.plan.visited;
+    answer.plan.prize += world.prize(node);
+  }
+  answer.plan.cost = cover.walk.cost;
+  answer.edges = std::move(cover);
+  answer.unreachable = count_unreachable(world, task.start());
+  return answer;
+}
+
+namespace {
 
 Answer plan_edges(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
   if (!request.reveal.all() || request.own_policy) {
@@ -126,49 +187,9 @@ Answer plan_edges(const World& world, const Task& task, const PlanRequest& reque
   });
   if (!cover.policy.empty()) policy = cover.policy;
   if (policy.empty()) policy = "nearest";
-  Answer answer{.world = with_resets(world, cover.walk, request.reset_cost.value_or(0)),
-                .task = task,
-                .policy = policy,
-                .plan = {},
-                .until_covered = !task.has_budget()};
-  std::vector<bool> visited(world.node_count());
-  for (const NodeId node : cover.walk.nodes) {
-    if (answer.plan.walk.empty() || answer.plan.walk.back() != node) answer.plan.walk.push_back(node);
-    if (visited[node]) continue;
-    visited[node] = true;
-    ++answer.plan.visited;
-    answer.plan.prize += world.prize(node);
-  }
-  answer.plan.cost = cover.walk.cost;
-  answer.edges = std::move(cover);
-  answer.unreachable = count_unreachable(world, task.start());
+  Answer answer = edge_answer(world, task, std::move(cover), policy);
   answer.elapsed_s = watch.seconds();
   return answer;
-}
-
-std::vector<std::string> edge_summary(const Answer& answer) {
-  const EdgeCover& edges = *answer.edges;
-  const auto resets = std::ranges::count(edges.walk.edges, EdgeWalk::kResetEdge);
-  std::string first =
-      fmt::format("walked {} of {} edges, {:.1f} %, for {}{}", edges.walked, edges.edges,
-                  edges.percent(static_cast<double>(edges.walked)), decimal(edges.walk.cost),
-                  answer.until_covered ? "" : fmt::format(" of a budget of {}", decimal(answer.task.budget())));
-  if (resets > 0) first += fmt::format(", {} reset{} among it", resets, resets == 1 ? "" : "s");
-  std::vector<std::string> lines = {std::move(first)};
-  if (edges.all_cheapest) {
-    lines.emplace_back("optimal: no walk over all edges is cheaper");
-  } else if (static_cast<double>(edges.walked) >= edges.bound) {
-    lines.emplace_back("optimal: no walk has more edges");
-  } else {
-    lines.push_back(fmt::format("no walk has more than {} edges, {:.1f} %: the gap is {:.1f} points",
-                                decimal(edges.bound), edges.percent(edges.bound),
-                                edges.percent(edges.bound - static_cast<double>(edges.walked))));
-  }
-  if (answer.unreachable > 0) {
-    lines.push_back(fmt::format("{} node{} cannot be reached from the start", answer.unreachable,
-                                answer.unreachable == 1 ? "" : "s"));
-  }
-  return lines;
 }
 
 }  // namespace
@@ -214,12 +235,22 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
 }
 
 std::optional<double> Answer::price_of_ignorance() const {
+  if (known && edges) {
+    const auto walked = static_cast<double>(edges->walked);
+    if (until_covered && known->prize != walked) return std::nullopt;
+    return until_covered ? graphdrl::price_of_ignorance(known->cost, plan.cost, /*costs=*/true)
+                         : graphdrl::price_of_ignorance(known->prize, walked, /*costs=*/false);
+  }
   if (!known || (until_covered && known->visited != plan.visited)) return std::nullopt;
   return until_covered ? graphdrl::price_of_ignorance(known->cost, plan.cost, /*costs=*/true)
                        : graphdrl::price_of_ignorance(known->prize, plan.prize, /*costs=*/false);
 }
 
 void judge(Answer& answer) {
+  if (answer.edges) {
+    answer.edges = judge_edges(answer.world, answer.task, answer.edges->reset_cost, std::move(answer.edges->walk));
+    return;
+  }
   const Task& task = answer.task;
   Plan& plan = answer.plan;
   plan.bound = kNoLimit;

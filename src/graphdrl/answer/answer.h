@@ -68,6 +68,9 @@ struct PlanRequest {
 // knew the map; where what is seen counts, it is not. Throws Error on a policy that there is not.
 Answer make_plan(const World& world, const Task& task, const PlanRequest& request, const Clock& clock = {});
 
+// The answer that a walk over edges is.
+Answer edge_answer(const World& world, const Task& task, EdgeCover cover, const std::string& policy);
+
 // Bounds a walk of any origin, as tightly as `search` does without a time limit, and counts what no walk can reach.
 void judge(Answer& answer);
 

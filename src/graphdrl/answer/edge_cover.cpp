@@ -269,15 +269,23 @@ WalkableEdges walkable_edges(const World& world) {
   return walkable;
 }
 
+namespace {
+
+std::optional<EdgeWalk> walk_over_all(const World& world, const Task& task, const Multigraph& graph,
+                                      std::optional<double> reset_cost) {
+  const EdgeKind kind = world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected;
+  if (has_too_many_odd_nodes(graph, kind, world.node_count())) return std::nullopt;
+  return postman_walk(graph, kind, world.node_count(), task.start(), {.end = task.end(), .reset_cost = reset_cost});
+}
+
+}  // namespace
+
 EdgeCover cover_edges(const World& world, const Task& task, std::optional<double> reset_cost,
                       const std::function<Plan(const World&, const Task&)>& plan_nodes) {
   const auto [graph, numbers] = walkable_edges(world);
-  const EdgeKind kind = world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected;
-  EdgeCover cover{.walk = {}, .edges = std::ssize(graph.edges)};
-  const auto all =
-      has_too_many_odd_nodes(graph, kind, world.node_count())
-          ? std::nullopt
-          : postman_walk(graph, kind, world.node_count(), task.start(), {.end = task.end(), .reset_cost = reset_cost});
+  const bool directed = world.open().directed();
+  EdgeCover cover{.walk = {}, .edges = std::ssize(graph.edges), .reset_cost = reset_cost};
+  const auto all = walk_over_all(world, task, graph, reset_cost);
   const EdgePlanner planner(world, task, graph, reset_cost);
   cover.bound = planner.bound();
   if (all && all->cost <= task.limit()) {
@@ -292,14 +300,13 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
     Rng rng(kNoiseSeed);
     std::vector<EdgeWalk> walks = {planner.greedy({}, 0, rng)};
     if (all) walks.push_back(planner.greedy(all->edges, 0, rng));
-    if (kind == EdgeKind::kUndirected) {
-      const std::int64_t tries = std::clamp<std::int64_t>(kNoisyWork / (cover.edges * cover.edges), 4, kMostNoisyTries);
-      for (std::int64_t i = 0; i < tries; ++i) walks.push_back(planner.greedy({}, kNoise, rng));
-    }
-    if (kind == EdgeKind::kDirected) {
+    if (directed) {
       auto [walk, bound] = planner.planned(plan_nodes);
       walks.push_back(std::move(walk));
       cover.bound = std::min(cover.bound, bound);
+    } else {
+      const std::int64_t tries = std::clamp<std::int64_t>(kNoisyWork / (cover.edges * cover.edges), 4, kMostNoisyTries);
+      for (std::int64_t i = 0; i < tries; ++i) walks.push_back(planner.greedy({}, kNoise, rng));
     }
     const auto rank = [&](const EdgeWalk& walk) { return std::pair(planner.different(walk), -walk.cost); };
     cover.walk = *std::ranges::max_element(walks, {}, rank);
@@ -308,6 +315,20 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
   for (std::int64_t& edge : cover.walk.edges) {
     if (edge >= 0) edge = numbers[edge];
   }
+  return cover;
+}
+
+EdgeCover judge_edges(const World& world, const Task& task, std::optional<double> reset_cost, EdgeWalk walk) {
+  const auto [graph, numbers] = walkable_edges(world);
+  EdgeCover cover{.walk = std::move(walk), .edges = std::ssize(graph.edges), .reset_cost = reset_cost};
+  std::vector<std::int64_t> walked = cover.walk.edges;
+  std::erase(walked, EdgeWalk::kResetEdge);
+  std::ranges::sort(walked);
+  cover.walked = std::unique(walked.begin(), walked.end()) - walked.begin();
+  cover.bound = EdgePlanner(world, task, graph, reset_cost).bound();
+  if (cover.walked < cover.edges) return cover;
+  const auto all = walk_over_all(world, task, graph, reset_cost);
+  cover.all_cheapest = all && cover.walk.cost <= all->cost;
   return cover;
 }
 

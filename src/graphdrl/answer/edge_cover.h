@@ -22,12 +22,13 @@ struct WalkableEdges {
 WalkableEdges walkable_edges(const World& world);
 
 struct EdgeCover {
-  EdgeWalk walk;              // with the numbers of WalkableEdges::numbers
-  std::int64_t walked = 0;    // different edges
-  std::int64_t edges = 0;     // that there are
-  double bound = 0;           // no walk within the budget has more
-  bool all_cheapest = false;  // it walks all, and none that does is cheaper
-  std::string policy = {};    // what made it, where that was none of plan_nodes
+  EdgeWalk walk;                          // with the numbers of WalkableEdges::numbers
+  std::int64_t walked = 0;                // different edges
+  std::int64_t edges = 0;                 // that there are
+  double bound = 0;                       // no walk within the budget has more
+  bool all_cheapest = false;              // it walks all, and none that does is cheaper
+  std::string policy = {};                // what made it, where that was none of plan_nodes
+  std::optional<double> reset_cost = {};  // of jumps to the start that walks may make
   double percent(double count) const { return edges == 0 ? 100.0 : 100.0 * count / static_cast<double>(edges); }
 };
 
@@ -43,5 +44,9 @@ struct EdgeCover {
 inline constexpr std::int64_t kExactEdges = 12;
 EdgeCover cover_edges(const World& world, const Task& task, std::optional<double> reset_cost,
                       const std::function<Plan(const World&, const Task&)>& plan_nodes);
+
+// What a walk of any origin covers, and the bound of the cheapest edges. walk: with the numbers of
+// WalkableEdges::numbers.
+EdgeCover judge_edges(const World& world, const Task& task, std::optional<double> reset_cost, EdgeWalk walk);
 
 }  // namespace graphdrl

@@ -55,8 +55,8 @@ class InputLines {
   bool cut_ = false;
 };
 
-LiveOptions options_of(const LiveArguments& arguments, const LiveRequest& request) {
-  LiveOptions options{.cover = parse_cover(arguments.cover), .reset_cost = arguments.reset_cost};
+LiveOptions options_of(const LiveRequest& request) {
+  LiveOptions options{.cover = parse_cover(request.cover), .reset_cost = request.reset_cost};
   if (!request.budget.empty()) {
     const std::optional<double> budget = Budget::parse(request.budget).cost();
     if (!budget) {
@@ -87,13 +87,6 @@ void add_live_options(CLI::App& command, LiveArguments& live) {
       "No map: a client says on standard input where it is and which moves it has there, a JSON object a line, and is "
       "told on standard output what to do next (docs/live.md)");
   const auto only_live = [&](CLI::Option* option) { option->needs(flag)->group(kWithLive); };
-  only_live(
-      command.add_option("--cover", live.cover, "What counts: states (nodes), or each move of each state (edges)")
-          ->check(CLI::IsMember({"nodes", "edges"}))
-          ->capture_default_str());
-  only_live(command.add_option("--reset-cost", live.reset_cost, "What it costs to start anew; without it nobody does")
-                ->check(CLI::NonNegativeNumber)
-                ->type_name("C"));
   CLI::Option* const transcript =
       add_text_option(command, "--transcript", live.transcript, "FILE", "Write down each message with its answer");
   only_live(transcript);
@@ -103,7 +96,7 @@ void add_live_options(CLI::App& command, LiveArguments& live) {
 }
 
 void explore_live(const LiveArguments& arguments, const LiveRequest& request) {
-  const LiveOptions options = options_of(arguments, request);
+  const LiveOptions options = options_of(request);
   for (const std::string& file : request.out) check_live_file(file);
   const LiveRun run =
       begin_live(options, {.file = arguments.transcript, .sync = arguments.sync, .resume = arguments.resume});

@@ -14,8 +14,6 @@ namespace graphdrl {
 
 struct LiveArguments {
   bool live = false;
-  std::string cover = "nodes";
-  std::optional<double> reset_cost;
   std::string transcript;
   bool sync = false;
   bool resume = false;
@@ -23,6 +21,8 @@ struct LiveArguments {
 
 // What `explore` asks for beside.
 struct LiveRequest {
+  std::string cover = "nodes";
+  std::optional<double> reset_cost = {};
   std::string budget;
   std::string end;
   std::string score;  // empty where it was not given

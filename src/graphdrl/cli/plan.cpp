@@ -13,6 +13,7 @@
 #include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/io/text.h"
+#include "graphdrl/live/edge_exploration.h"
 #include "graphdrl/planners/registry.h"
 #include "graphdrl/report/plan_files.h"
 #include "graphdrl/report/progress.h"
@@ -116,7 +117,7 @@ void plan(const PlanOptions& options) {
                       static_cast<double>(progress.visited) / valid);
   };
   const Clock clock(options.time_limit_s, &stop_flag(), &listener);
-  const Answer answer = make_plan(world, task, request, clock);
+  const Answer answer = answer_task(world, task, request, clock);
   display.finish();
   std::vector<std::function<void()>> outputs;
   for (const std::string& file : options.out) outputs.emplace_back([&] { write_plan(answer, file); });
@@ -157,6 +158,20 @@ void add_shared_outputs(CLI::App& command, PlanOptions& options) {
   add_memory_limit_option(command);
 }
 
+void add_cover_options(CLI::App& command, PlanOptions& options) {
+  command
+      .add_option(
+          "--cover", options.cover,
+          "What counts: nodes, or edges walked whole, loops and parallel ones too; without a budget all of them")
+      ->check(CLI::IsMember({"nodes", "edges"}))
+      ->capture_default_str();
+  command
+      .add_option("--reset-cost", options.reset_cost,
+                  "Of --cover edges where edges lead one way: what it costs to jump back to the start")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("C");
+}
+
 }  // namespace
 
 void add_plan_command(CLI::App& app) {
@@ -165,17 +180,7 @@ void add_plan_command(CLI::App& app) {
   add_shared_options(command, *options);
   options->request.policy = kPlanPolicy;
   command.add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
-  command
-      .add_option("--cover", options->cover,
-                  "What counts: nodes, or edges, loops and parallel ones too; without a budget the cheapest walk over "
-                  "all edges")
-      ->check(CLI::IsMember({"nodes", "edges"}))
-      ->capture_default_str();
-  command
-      .add_option("--reset-cost", options->reset_cost,
-                  "Of --cover edges where edges lead one way: what it costs to jump back to the start")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("C");
+  add_cover_options(command, *options);
   command
       .add_option("--iterations", options->request.iterations,
                   "Of search: how many steps to take in all; the default depends on the size of the world")
@@ -209,6 +214,7 @@ void add_explore_command(CLI::App& app) {
   command.add_option("--score", options->score, "What counts: nodes visited, or nodes seen")
       ->check(CLI::IsMember({"visited", "seen"}))
       ->capture_default_str();
+  add_cover_options(command, *options);
   add_text_option(command, "--believed", options->believed, "OLD",
                   "An old map, of which some may have changed: cells are the same by place, other nodes by name");
   CLI::Option* const until =

@@ -97,8 +97,11 @@ Observation LiveExploration::observation(const NodeSet& ground, int visited_coun
 
 const LiveStep& LiveExploration::next() {
   if (step_) return *step_;
-  std::optional<LiveStep> step = explore();
-  while (!step && map_->retry()) step = explore();
+  std::optional<LiveStep> step;
+  while (!step && !ends_) {
+    step = explore();
+    if (!step && !map_->retry()) break;
+  }
   if (!step) step = go_home();
   return step_.emplace(step ? *std::move(step) : done_now());
 }
@@ -148,7 +151,7 @@ std::optional<LiveStep> LiveExploration::explore() {
   return go([&](const Observation& now) {
     if (now.action_count() == 0) return kNoNode;
     if (must_go_home(now)) return next_home(now);
-    if (nothing_left(now)) return kNoNode;
+    if (now.spendable < 0 || nothing_left(now)) return kNoNode;
     int action = kStop;
     policy_->act({&now, 1}, {&action, 1}, clock);
     return action == kStop ? kNoNode : now.target(action);

@@ -32,6 +32,8 @@ class LiveExploration {
   void observe(const LiveObservation& observation);
   // REQUIRES: something was observed. Asked again before the next observation it gives the same step.
   const LiveStep& next();
+  // From now on it only goes home, where it must end there.
+  void end() { ends_ = true; }
   // Takes a step that was told before for the next one, without choosing: of a transcript. Throws Error where there is
   // no such step.
   void next_was(const LiveStep& step);
@@ -59,6 +61,7 @@ class LiveExploration {
 
   LiveOptions options_;
   std::unique_ptr<LiveMap> map_;  // null until something was observed
+  bool ends_ = false;             // end() was called
   bool stops_ = true;             // whether the policy stops where nothing is left
   std::unique_ptr<Policy> policy_;
   std::optional<Task> task_;  // once there is a start; of policies: without a budget it may end anywhere

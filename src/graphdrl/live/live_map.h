@@ -30,6 +30,7 @@ class FieldError : public Error {
 
 struct LiveOptions {
   Cover cover = Cover::kNodes;            // of states: what is worth a first time, a state, or a move of a state
+  bool directed = true;                   // of states: moves lead one way; else back, too, by the same name
   std::optional<Score> score = {};        // of cells: what is worth something, cells seen (the default) or visited
   int connectivity = 8;                   // of cells: steps lead to four or to eight others
   double budget = kNoLimit;               // of the costs that the client reports

@@ -14,7 +14,8 @@ void check_name(const std::string& name, const char* field) {
 }  // namespace
 
 LiveStates::LiveStates(const LiveOptions& options)
-    : reset_cost_(options.reset_cost), graph_(options.cover, options.reset_cost, options.end_at_start) {}
+    : reset_cost_(options.reset_cost),
+      graph_(options.cover, options.directed, options.reset_cost, options.end_at_start) {}
 
 std::unique_ptr<Policy> LiveStates::own_policy(const std::string& name) {
   if (name != kNovelty) return nullptr;
@@ -169,6 +170,15 @@ void LiveStates::add_to(LiveReport& report) const {
   }
 }
 
+// Whether a move is the way back of another one that a map has for both.
+bool LiveStates::is_way_back(std::int32_t state, const StateMove& move) const {
+  const std::int32_t other = graph_.place(move.to).state;
+  if (graph_.directed() || state <= other) return false;
+  return std::ranges::any_of(graph_.moves(other), [&](const StateMove& twin) {
+    return twin.name == move.name && twin.to == graph_.node(state) && (!twin.gone || twin.tried);
+  });
+}
+
 // States are nodes, by name; moves that were done, or are said to lead somewhere, are edges, by name.
 GraphMap LiveStates::graph_map() const {
   GraphMap map;
@@ -178,12 +188,12 @@ GraphMap LiveStates::graph_map() const {
     if (graph_.prize(state) != 1 && map.prizes.empty()) map.prizes.assign(state, 1);
     if (!map.prizes.empty()) map.prizes.push_back(graph_.prize(state));
     for (const StateMove& move : graph_.moves(state)) {
-      if (move.to == kNoNode || (move.gone && !move.tried)) continue;
+      if (move.to == kNoNode || (move.gone && !move.tried) || is_way_back(state, move)) continue;
       all.edges.push_back({state, graph_.place(move.to).state, move.cost});
       all.labels.push_back(graph_.move_name(move.name));
     }
   }
-  map.graph = Graph::from_edges(graph_.state_count(), all.edges, EdgeKind::kDirected);
+  map.graph = Graph::from_edges(graph_.state_count(), all.edges, kind());
   map.blocked.resize(graph_.state_count());
   map.multigraph = std::make_shared<const Multigraph>(std::move(all));
   map.task.start = 0;  // the first state that was heard of
@@ -206,7 +216,10 @@ LiveMap::Picture LiveStates::picture(const std::string& name, std::span<const No
   const auto join = [&](NodeId from, NodeId to) {
     return joined.insert(static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to)).second;
   };
-  for (const Edge& edge : edges) join(edge.a, edge.b);
+  for (const Edge& edge : edges) {
+    join(edge.a, edge.b);
+    if (!graph_.directed()) join(edge.b, edge.a);
+  }
   for (std::size_t i = 1; i < walk.size(); ++i) {
     const NodeId from = number(walk[i - 1]);
     const NodeId to = number(walk[i]);
@@ -214,7 +227,7 @@ LiveMap::Picture LiveStates::picture(const std::string& name, std::span<const No
     const bool reset = reset_cost_ && to == graph_.reset_target();
     edges.push_back({from, to, reset ? *reset_cost_ : 1});
   }
-  map.graph = Graph::from_edges(graph_.state_count(), edges, EdgeKind::kDirected);
+  map.graph = Graph::from_edges(graph_.state_count(), edges, kind());
   Picture picture{.world = World(name, std::move(map)),
                   .plan = {},
                   .seen = {},

@@ -51,6 +51,8 @@ class LiveStates final : public LiveMap {
   double settle(const Pending& step, const LiveObservation& seen);
   void settle_reset(const LiveObservation& seen, double cost);
   LiveStep tell_move(std::int32_t move);
+  bool is_way_back(std::int32_t state, const StateMove& move) const;
+  EdgeKind kind() const { return graph_.directed() ? EdgeKind::kDirected : EdgeKind::kUndirected; }
   GraphMap graph_map() const;
 
   std::optional<double> reset_cost_;  // as it was asked for

@@ -60,11 +60,12 @@ std::vector<OfferedMove> moves_of(const json& moves) {
       offered.push_back({.name = move.get<std::string>()});
       continue;
     }
-    check_fields(move, {"move", "to", "cost"}, "moves");
+    check_fields(move, {"move", "to", "cost", "tried"}, "moves");
     if (!move.contains("move")) throw FieldError("moves", {.what = "a move has no name", .got = shortened(move)});
     OfferedMove one{.name = text_of(move, "move")};
     if (move.contains("to")) one.to = text_of(move, "to");
     if (move.contains("cost")) one.cost = amount_of(move, "cost");
+    if (move.contains("tried")) one.tried = truth_of(move, "tried");
     offered.push_back(std::move(one));
   }
   return offered;
@@ -183,9 +184,9 @@ LiveOptions parse_live_options(const json& open, const LiveOptions& defaults) {
     throw FieldError(field, {.what = "bad value", .expected = value.dump(), .got = shortened(open.at(field))});
   };
   only("protocol", kLiveProtocol);
-  only("directed", true);  // moves lead one way
   only("explorers", 1);
   if (open.contains("cover")) options.cover = parse_cover(text_of(open, "cover"));
+  if (open.contains("directed")) options.directed = truth_of(open, "directed");
   if (open.contains("score")) {
     options.score.reset();
     if (!open.at("score").is_null()) options.score = parse_score(text_of(open, "score"));
@@ -234,6 +235,7 @@ ordered_json live_options_json(const LiveOptions& options) {
   if (options.score) score = *options.score == Score::kSeen ? "seen" : "visited";
   return {{"protocol", kLiveProtocol},
           {"cover", options.cover == Cover::kNodes ? "nodes" : "edges"},
+          {"directed", options.directed},
           {"score", score},
           {"connectivity", options.connectivity},
           {"budget", limit(options.budget)},

@@ -18,14 +18,19 @@ std::size_t hash_of(const std::vector<OfferedMove>& moves) {
     add(std::hash<std::string>()(move.name));
     add(move.to ? std::hash<std::string>()(*move.to) : 1);
     add(move.cost ? std::hash<double>()(*move.cost) : 2);
+    add(move.tried ? 3 : 4);
   }
   return hash;
 }
 
 }  // namespace
 
-StateGraph::StateGraph(Cover cover, std::optional<double> reset_cost, bool way_home)
-    : cover_(cover), reset_cost_(reset_cost), way_home_(way_home), discovery_("live", EdgeKind::kDirected) {}
+StateGraph::StateGraph(Cover cover, bool directed, std::optional<double> reset_cost, bool way_home)
+    : cover_(cover),
+      directed_(directed),
+      reset_cost_(reset_cost),
+      way_home_(way_home),
+      discovery_("live", EdgeKind::kDirected) {}
 
 std::int32_t StateGraph::find(std::string_view name) const {
   const auto found = state_of_.find(std::string(name));
@@ -103,9 +108,10 @@ void StateGraph::offer(std::int32_t state, const std::vector<OfferedMove>& offer
   for (const OfferedMove& one : offered) {
     const std::int32_t name = number_of(one.name);
     const auto [found, fresh] = by_name.emplace(name, static_cast<std::int32_t>(by_name.size()));
-    if (fresh) states_[state].moves.push_back({.name = name});
+    if (fresh) add_move(state, name);
     StateMove& move = states_[state].moves[found->second];
     move.gone = false;
+    move.tried = move.tried || one.tried;
     // What is said again as before is no news: what was found out since holds.
     if (one.cost && *one.cost != move.told_cost) move.cost = move.told_cost = *one.cost;
     if (!one.to) continue;
@@ -138,6 +144,7 @@ void StateGraph::offer(std::int32_t state, const std::vector<OfferedMove>& offer
   for (const NodeId to : touched) {
     if (to != kNoNode) settle_edge(here.node, to);
   }
+  for (std::int32_t i = 0; !directed_ && i < std::ssize(states_[state].moves); ++i) lead_back(state, i);
   show_more(state);
 }
 
@@ -180,6 +187,43 @@ NodeId StateGraph::lead(std::int32_t state, std::int32_t move, NodeId to) {
   states_[state].moves[move].to = to;
   moves_to_[from_to(from, to)].push_back(move);
   return before;
+}
+
+std::int32_t StateGraph::add_move(std::int32_t state, std::int32_t name) {
+  std::vector<StateMove>& moves = states_[state].moves;
+  const auto move = static_cast<std::int32_t>(moves.size());
+  moves.push_back({.name = name});
+  if (!directed_) move_of_.emplace(from_to(state, name), move);
+  return move;
+}
+
+// Where moves lead both ways: the state that a move leads to has it, too.
+void StateGraph::lead_back(std::int32_t state, std::int32_t index) {
+  const StateMove move = states_[state].moves[index];
+  const NodeId here = states_[state].node;
+  if (directed_ || move.gone || move.to == kNoNode || move.to == here) return;
+  const std::int32_t other = places_[move.to].state;
+  const auto found = move_of_.find(from_to(other, move.name));
+  const bool fresh = found == move_of_.end();
+  const std::int32_t back = fresh ? add_move(other, move.name) : found->second;
+  StateMove& same = states_[other].moves[back];
+  if (!fresh && same.to == here && same.tried == move.tried && same.cost == move.cost) return;
+  change();
+  const bool counted = !fresh && worth_trying(same) && states_[other].visited;
+  same.tried = same.tried || move.tried;
+  same.cost = move.cost;
+  const NodeId before = lead(other, back, here);
+  if (before != kNoNode && before != here) settle_edge(move.to, before);
+  settle_edge(move.to, here);
+  if (!states_[other].visited) return;  // what is worth trying is counted once it is entered
+  StateMove& settled = states_[other].moves[back];
+  if (worth_trying(settled)) {
+    if (!counted) ++states_[other].untried;
+  } else {
+    if (counted) --states_[other].untried;
+    if (settled.untried_node != kNoNode) hide(settled, other);
+  }
+  show_more(other);
 }
 
 std::int32_t StateGraph::move_to(std::int32_t state, NodeId to) const {
@@ -243,6 +287,7 @@ void StateGraph::done(std::int32_t state, std::int32_t index, std::int32_t to, d
   const NodeId before = lead(state, index, target);
   if (before != kNoNode && before != target) settle_edge(states_[state].node, before);
   if (!settled || states_[state].moves[index].surprises >= kMostSurprises) settle_edge(states_[state].node, target);
+  lead_back(state, index);
   show_more(state);
 }
 

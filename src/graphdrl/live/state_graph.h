@@ -17,6 +17,7 @@ struct OfferedMove {
   std::string name;
   std::optional<std::string> to = {};  // the state it leads to, where that can be seen
   std::optional<double> cost = {};     // empty: what it cost last, or 1
+  bool tried = false;                  // it was done before, as in an earlier run: it does not count any more
 };
 
 // A move of a state.
@@ -42,9 +43,10 @@ struct StateMove {
 // Moves that lead back to their state are no edges, and of several to the same state the cheapest one that works is.
 class StateGraph {
  public:
-  // reset_cost: of going back to the first state from any other; empty where that cannot be done. way_home: whether a
-  // walk must be able to end at the first state.
-  StateGraph(Cover cover, std::optional<double> reset_cost, bool way_home);
+  // directed: false where each move leads back, too, as a move of the same name of the state that it leads to; both
+  // count as one. reset_cost: of going back to the first state from any other; empty where that cannot be done.
+  // way_home: whether a walk must be able to end at the first state.
+  StateGraph(Cover cover, bool directed, std::optional<double> reset_cost, bool way_home);
 
   // States have numbers in the order in which they were heard of, and moves numbers of their state in the order in
   // which they were offered.
@@ -59,6 +61,7 @@ class StateGraph {
   Discovery& discovery() { return discovery_; }
   const View& view() const { return discovery_.view(); }
   Cover cover() const { return cover_; }
+  bool directed() const { return directed_; }
 
   std::int32_t state_count() const { return static_cast<std::int32_t>(states_.size()); }
   std::int32_t find(std::string_view name) const;  // -1: never heard of
@@ -132,10 +135,13 @@ class StateGraph {
   void show_more(std::int32_t state);
   void hide(StateMove& move, std::int32_t state);
   NodeId lead(std::int32_t state, std::int32_t move, NodeId to);
+  std::int32_t add_move(std::int32_t state, std::int32_t name);
+  void lead_back(std::int32_t state, std::int32_t move);
   void settle_resets(NodeId target);
   void settle_edge(NodeId from, NodeId to);
 
   Cover cover_;
+  bool directed_;
   std::optional<double> reset_cost_;
   bool way_home_;
   Discovery discovery_;
@@ -146,6 +152,7 @@ class StateGraph {
   std::vector<std::string> move_names_;
   std::unordered_map<std::string, std::int32_t> number_of_move_;
   std::unordered_map<std::uint64_t, std::vector<std::int32_t>> moves_to_;  // by from_to(): what led there last
+  std::unordered_map<std::uint64_t, std::int32_t> move_of_;                // by state and name; unless directed
   std::vector<Place> waiting_;                                             // moves that failed
   std::vector<Place> doubted_;  // moves that led elsewhere than the client says
   bool changed_ = false;        // since the visit began

@@ -187,6 +187,7 @@ void add_edges(const Answer& answer, nlohmann::ordered_json& json) {
   const Multigraph* const all = answer.world.multigraph();
   const bool labelled = all != nullptr && !all->labels.empty();
   json["cover"] = "edges";
+  if (edges.reset_cost) json["reset_cost"] = *edges.reset_cost;
   Json& numbers = json["walk_edges"] = Json::array();
   Json labels = Json::array();
   for (const std::int64_t edge : edges.walk.edges) {
@@ -256,6 +257,7 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
   }
   if (answer.known) {
     json["known"] = {{"visited", answer.known->visited}, {"prize", answer.known->prize}, {"cost", answer.known->cost}};
+    if (answer.edges) json["known"] = {{"edges_walked", answer.known->prize}, {"cost", answer.known->cost}};
     const auto price = answer.price_of_ignorance();
     json["price_of_ignorance"] = price ? Json(*price) : Json();
   }
