@@ -3,6 +3,7 @@
 #include "bindings.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/live/edge_exploration.h"
 #include "graphdrl/planners/bound.h"
 #include "graphdrl/report/picture.h"
 #include "graphdrl/report/plan_files.h"
@@ -28,13 +29,18 @@ Asked asked_of(const World& world, const std::optional<std::string>& budget, std
 Answer plan(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
             const std::optional<AskedEnd>& end, const std::string& policy, const nb::object& own,
             std::optional<double> time_limit, std::uint64_t seed, const nb::object& on_progress,
-            const std::string& reveal, const std::string& score, std::optional<double> think_time,
-            const std::optional<World>& believed) {
-  const Task task(world, asked_of(world, budget, start, end));
+            const std::string& cover, std::optional<double> reset_cost, const std::string& reveal,
+            const std::string& score, std::optional<double> think_time, const std::optional<World>& believed) {
+  Asked asked = asked_of(world, budget, start, end);
+  const Cover covered = parse_cover(cover);
+  if (covered == Cover::kEdges && !asked.budget && !world.given().budget) asked.budget = Budget(kNoLimit);
+  const Task task(world, asked);
   PlanRequest request{.policy = policy,
                       .seed = seed,
                       .reveal = Reveal::parse(reveal),
                       .score = parse_score(score),
+                      .cover = covered,
+                      .reset_cost = reset_cost,
                       .believed = believed ? believe(*believed, world) : nullptr,
                       .think_s = think_time.value_or(kNoLimit)};
   if (!own.is_none()) {
@@ -43,14 +49,19 @@ Answer plan(const World& world, const std::optional<std::string>& budget, std::o
     request.own_policy = chosen.policy;
   }
   std::optional<Answer> answer;
-  run_planning(time_limit, on_progress, [&](const Clock& clock) { answer = make_plan(world, task, request, clock); });
+  run_planning(time_limit, on_progress, [&](const Clock& clock) { answer = answer_task(world, task, request, clock); });
   return std::move(*answer);
 }
 
 double upper_bound(const World& world, const std::optional<std::string>& budget, std::optional<std::int64_t> start,
-                   const std::optional<AskedEnd>& end, std::optional<double> time_limit) {
+                   const std::optional<AskedEnd>& end, std::optional<double> time_limit, const std::string& cover,
+                   std::optional<double> reset_cost) {
   const Task task(world, asked_of(world, budget, start, end));
   double bound = 0;
+  if (parse_cover(cover) == Cover::kEdges) {
+    return judge_edges(world, task, reset_cost, {.nodes = {task.start()}}).bound;
+  }
+  if (reset_cost) throw Error({.what = "resets go with the cover of edges"});
   run_planning(time_limit, nb::none(), [&](const Clock& clock) { bound = max_prize(task, clock); });
   return bound;
 }
@@ -71,10 +82,16 @@ nb::dict claims_of(const Answer& answer) {
   claims["seen"] = answer.discovered.nodes;
   claims["seen_after_step"] = answer.discovered.after_step;
   claims["no_way_back"] = answer.discovered.no_way_back;
+  if (answer.edges) claims["document"] = plan_json(answer).dump();
   return claims;
 }
 
 Answer restore(const World& world, const InArray<NodeId, nb::ndim<1>>& walk, const nb::dict& claims) {
+  if (claims.contains("document")) {
+    Answer answer = parse_plan(world, nb::cast<std::string>(claims["document"]), world.name());
+    answer.elapsed_s = nb::cast<double>(claims["elapsed_s"]);
+    return answer;
+  }
   std::vector<NodeId> nodes(walk.data(), walk.data() + walk.size());
   if (nodes.empty()) throw Error({.what = "the walk is empty", .where = world.name()});
   for (const NodeId node : nodes) checked_node(world, node, "a step");
@@ -122,11 +139,24 @@ void bind_planning(nb::module_& module) {
       .def_prop_ro("prize", [](const Answer& answer) { return answer.plan.prize; })
       .def_prop_ro("cost", [](const Answer& answer) { return answer.plan.cost; })
       .def_prop_ro("bound", [](const Answer& answer) { return answer.plan.bound; })
-      .def_prop_ro("optimal", [](const Answer& answer) { return answer.plan.optimal; })
+      .def_prop_ro("optimal",
+                   [](const Answer& answer) { return answer.edges ? answer.edges->optimal() : answer.plan.optimal; })
       .def_prop_ro("budget", [](const Answer& answer) { return answer.task.budget(); })
       .def_prop_ro("end", [](const Answer& answer) { return answer.task.end(); })
       .def_prop_ro("policy", [](const Answer& answer) { return answer.policy; })
       .def_prop_ro("elapsed_s", [](const Answer& answer) { return answer.elapsed_s; })
+      .def_prop_ro(
+          "walk_edges",
+          [](const Answer& answer) { return answer.edges ? std::optional(answer.edges->walk.edges) : std::nullopt; })
+      .def_prop_ro(
+          "edges_walked",
+          [](const Answer& answer) { return answer.edges ? std::optional(answer.edges->walked) : std::nullopt; })
+      .def_prop_ro(
+          "edge_count",
+          [](const Answer& answer) { return answer.edges ? std::optional(answer.edges->edges) : std::nullopt; })
+      .def_prop_ro(
+          "edge_bound",
+          [](const Answer& answer) { return answer.edges ? std::optional(answer.edges->bound) : std::nullopt; })
       .def_prop_ro("summary", [](const Answer& answer) { return plan_summary(answer); })
       .def("json", [](const Answer& answer) { return plan_json(answer).dump(); })
       .def("svg",
@@ -139,10 +169,11 @@ void bind_planning(nb::module_& module) {
       });
   module.def("plan", &plan, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(), nb::arg("end").none(),
              nb::arg("policy"), nb::arg("own").none(), nb::arg("time_limit").none(), nb::arg("seed"),
-             nb::arg("on_progress").none(), nb::arg("reveal") = "all", nb::arg("score") = "visited",
-             nb::arg("think_time") = nb::none(), nb::arg("believed") = nb::none());
+             nb::arg("on_progress").none(), nb::arg("cover") = "nodes", nb::arg("reset_cost") = nb::none(),
+             nb::arg("reveal") = "all", nb::arg("score") = "visited", nb::arg("think_time") = nb::none(),
+             nb::arg("believed") = nb::none());
   module.def("upper_bound", &upper_bound, nb::arg("world"), nb::arg("budget").none(), nb::arg("start").none(),
-             nb::arg("end").none(), nb::arg("time_limit").none());
+             nb::arg("end").none(), nb::arg("time_limit").none(), nb::arg("cover"), nb::arg("reset_cost").none());
 }
 
 }  // namespace graphdrl::python

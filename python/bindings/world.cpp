@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "bindings.h"
+#include "graphdrl/answer/edge_cover.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
@@ -37,12 +38,14 @@ World grid(std::string name, const InArray<bool, nb::ndim<2>>& blocked, bool dia
 World graph(std::string name, std::int64_t node_count, const InArray<std::int64_t, nb::shape<-1, 2>>& edges,
             const InArray<double, nb::ndim<1>>& costs, bool directed, const InArray<bool, nb::ndim<1>>& blocked,
             std::vector<std::string> labels, const InArray<double, nb::ndim<1>>& prizes,
-            const InArray<double, nb::shape<-1, 2>>& places, const std::string& unit, const GivenState& given) {
+            const InArray<double, nb::shape<-1, 2>>& places, const std::string& unit, const GivenState& given,
+            std::vector<std::string> edge_labels) {
   const auto& [budget, start, end] = given;
   const EdgeArrays arrays{.node_count = node_count,
                           .edges = {edges.data(), edges.size()},
                           .costs = {costs.data(), costs.size()},
-                          .directed = directed};
+                          .directed = directed,
+                          .labels = std::move(edge_labels)};
   GraphMap map{.graph = {},
                .blocked = std::vector<bool>(blocked.data(), blocked.data() + blocked.size()),
                .labels = std::move(labels),
@@ -94,11 +97,11 @@ std::vector<std::uint8_t> bytes_of(const std::vector<bool>& flags) {
   return {flags.begin(), flags.end()};
 }
 
-// The edges of the graph with its blocked nodes: [2E], [E].
-std::tuple<OutArray<std::int64_t>, OutArray<double>> edges_of(const World& world) {
+// Edges as arrays: [2E], [E].
+std::tuple<OutArray<std::int64_t>, OutArray<double>> arrays_of(const std::vector<Edge>& edges) {
   std::vector<std::int64_t> ends;
   std::vector<double> costs;
-  for (const Edge& edge : world.graph().edges()) {
+  for (const Edge& edge : edges) {
     ends.push_back(edge.a);
     ends.push_back(edge.b);
     costs.push_back(edge.cost);
@@ -133,7 +136,7 @@ void bind_worlds(nb::module_& module) {
                   nb::arg("frame").none())
       .def_static("graph", &graph, nb::arg("name"), nb::arg("node_count"), nb::arg("edges"), nb::arg("costs"),
                   nb::arg("directed"), nb::arg("blocked"), nb::arg("labels"), nb::arg("prizes"), nb::arg("places"),
-                  nb::arg("unit"), nb::arg("given"))
+                  nb::arg("unit"), nb::arg("given"), nb::arg("edge_labels") = std::vector<std::string>())
       .def_static("from_file", &from_file, nb::arg("path"), nb::arg("cost_attribute"), nb::arg("prize_attribute"),
                   nb::arg("cell_pixels"), nb::arg("unknown_is_free"), nb::arg("robot_radius"),
                   nb::arg("cell_size").none(), nb::arg("connectivity"), nb::arg("cut_corners"), nb::arg("note"))
@@ -166,7 +169,11 @@ void bind_worlds(nb::module_& module) {
                      const GivenTask& given = world.given();
                      return GivenState{given.budget, given.start, given.end};
                    })
-      .def_prop_ro("edges", &edges_of, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "edges", [](const World& world) { return arrays_of(world.graph().edges()); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "all_edges", [](const World& world) { return arrays_of(all_edges(world).edges); }, nb::rv_policy::automatic)
+      .def_prop_ro("edge_labels", [](const World& world) { return all_edges(world).labels; })
       .def("svg", [](const World& world) { return Picture(world, {}, world.name(), {}).svg(); });
   std::vector<std::string> names;
   for (const WorldFamily& family : world_families()) names.emplace_back(family.name);

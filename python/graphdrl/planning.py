@@ -82,6 +82,30 @@ class Plan:
         return self._core.optimal
 
     @property
+    def walk_edges(self) -> list[int | None] | None:
+        """The edges walked, where edges count; None for a reset, and where nodes count.
+
+        Numbers are those of `World.all_edges`. `walk`, `nodes` and `costs` leave out loops then.
+        """
+        edges = self._core.walk_edges
+        return None if edges is None else [None if edge < 0 else edge for edge in edges]
+
+    @property
+    def edges_walked(self) -> int | None:
+        """How many different edges were walked, where edges count; else None."""
+        return self._core.edges_walked
+
+    @property
+    def edge_count(self) -> int | None:
+        """How many edges there are, where edges count; else None."""
+        return self._core.edge_count
+
+    @property
+    def edge_bound(self) -> float | None:
+        """No walk within the budget has more edges, where edges count; else None."""
+        return self._core.edge_bound
+
+    @property
     def seen(self) -> list[Node] | None:
         """The nodes seen, as the world calls them, in the order in which they were seen; None where the map was known.
 
@@ -197,6 +221,13 @@ def _think_time(seconds: float | None) -> float | None:
     return value
 
 
+def _covered(cover: str, reset_cost: float | None) -> tuple[str, float | None]:
+    cost = None if reset_cost is None else number(reset_cost, "reset_cost")
+    if cost is not None and not cost >= 0:
+        raise wrong("reset_cost", "a cost of at least 0", reset_cost)
+    return text(cover, "cover"), cost
+
+
 def policy_of(policy: str | Policy | OwnPolicy) -> tuple[str, Any]:
     """What a policy is called, and what it is unless it is known by that name."""
     if isinstance(policy, str):
@@ -215,6 +246,8 @@ def plan(
     end: Node | None = None,
     policy: str | Policy | OwnPolicy = "search",
     *,
+    cover: str = "nodes",
+    reset_cost: float | None = None,
     time_limit: float | None = None,
     seed: int = 1,
     on_progress: OnProgress | None = None,
@@ -230,6 +263,8 @@ def plan(
         end: a node, or one of the words `"start"` and `"anywhere"`, also where a node is called so: `"#N"` is then the
             node of number N. By default the file's, else anywhere.
         policy: a name as of `graphdrl plan --policy`, a Policy, or a callable as `evaluate` takes.
+        cover: what counts, `nodes` or `edges`, loops and parallel ones too; edges without a budget: all of them.
+        reset_cost: of `edges` that lead one way: what a jump back to the start costs; None where there is none.
         time_limit: seconds for all of it. Without one, the same arguments give the same walk.
         seed: of the search, and of random policies.
         on_progress: called now and then with the nodes visited, by the walk under way or by the best so far, and the
@@ -242,7 +277,7 @@ def plan(
     name, own = policy_of(policy)
     report = _core.plan(
         *_asked(world, budget, start, end), name, own, _seconds(time_limit), whole_number(seed, "seed"),
-        function(on_progress, "on_progress"),
+        function(on_progress, "on_progress"), *_covered(cover, reset_cost),
     )  # fmt: skip
     return Plan(world, report)
 
@@ -254,6 +289,8 @@ def explore(
     end: Node | None = None,
     policy: str | Policy | OwnPolicy | None = None,
     *,
+    cover: str = "nodes",
+    reset_cost: float | None = None,
     reveal: str = "edges",
     score: str = "visited",
     believed: World | None = None,
@@ -279,6 +316,9 @@ def explore(
         policy: as of `plan`; by default `search:10000` with `believed`, `tour` with the score `seen` on cells within a
             radius or in sight, else `explorer`, the one for unknown maps. Policies that plan, and an Explorer of known
             maps, do so on what is known, anew with each discovery.
+        cover: as of `plan`. Where edges count, visits show edges; policies are those of `LiveExploration`, which are
+            none of your own, and the walk ends anywhere or at its start.
+        reset_cost: as of `plan`.
         reveal: what a visit shows. `edges`: those of the node, and where they lead; `radius:R`: all within the cost R;
             `sight:R`, on grids: what straight lines of the length R meet; `all`: the whole map.
         score: what counts, nodes `visited` or nodes `seen`.
@@ -305,8 +345,8 @@ def explore(
         budget = "inf"
     report = _core.plan(
         *_asked(world, budget, start, end), name, own, _seconds(time_limit), whole_number(seed, "seed"),
-        function(on_progress, "on_progress"), text(reveal, "reveal"), text(score, "score"),
-        _think_time(think_time), None if believed is None else _require_world(believed)._core,
+        function(on_progress, "on_progress"), *_covered(cover, reset_cost), text(reveal, "reveal"),
+        text(score, "score"), _think_time(think_time), None if believed is None else _require_world(believed)._core,
     )  # fmt: skip
     return Plan(world, report)
 
@@ -317,21 +357,28 @@ def upper_bound(
     start: Node | None = None,
     end: Node | None = None,
     *,
+    cover: str = "nodes",
+    reset_cost: float | None = None,
     time_limit: float | None = None,
 ) -> float:
     """What no walk's prize exceeds: a number of nodes, where there are no prizes. Source: docs/search.md, "Bounds".
+
+    Of edges it is the number of the cheapest ones in reach that the budget pays for; a plan has a tighter one.
 
     Args:
         world: where to walk.
         budget: as of `plan`.
         start: as of `plan`.
         end: as of `plan`.
+        cover: as of `plan`.
+        reset_cost: as of `plan`.
         time_limit: seconds, 0 to 1,000,000. Without one, the same arguments give the same bound.
 
     Raises:
         Error: a blocked or missing node, a bad budget or time limit.
     """
-    return _core.upper_bound(*_asked(world, budget, start, end), _seconds(time_limit))
+    covered = _covered(cover, reset_cost)
+    return _core.upper_bound(*_asked(world, budget, start, end), _seconds(time_limit), *covered)
 
 
 def evaluate(
@@ -342,6 +389,8 @@ def evaluate(
     end: Node | None = None,
     episodes: int = 30,
     all_starts: bool = False,
+    cover: str = "nodes",
+    reset_cost: float | None = None,
     seed: int = 1,
 ) -> list[dict[str, Any]]:
     """Compares policies on worlds, as `graphdrl evaluate`. Every policy has the same starts.
@@ -355,12 +404,14 @@ def evaluate(
             anywhere. A node must be one of every world.
         episodes: walks of each policy on each world, where `all_starts` is false.
         all_starts: walk from each free node once.
+        cover: what counts, `nodes` or `edges`; edges are covered by policies that have a name.
+        reset_cost: as of `plan`.
         seed: of the starts, the search and random policies.
 
     Returns:
         Rows for `pandas.DataFrame`, with `map`, `policy`, `valid_nodes`, `budget`, `episodes`; and in percent of the
-        free nodes, or of all prizes, `mean`, `std`, `best`, `ci95_low`, `ci95_high`, `optimum`, `paper`, None where
-        unknown.
+        free nodes, of all prizes, or of the edges, `mean`, `std`, `best`, `ci95_low`, `ci95_high`, `optimum`, `paper`,
+        None where unknown.
 
     Raises:
         Error: a bad budget, end or policy. What a policy of your own raises comes out as it is.
@@ -382,6 +433,7 @@ def evaluate(
     return _core.evaluate(
         [world._core for world in worlds], names, own, None if budget is None else budget_text(budget),
         _end_text(worlds, end), episodes, flag(all_starts, "all_starts"), whole_number(seed, "seed"),
+        *_covered(cover, reset_cost),
     )  # fmt: skip
 
 

@@ -168,7 +168,8 @@ class World:
         """A graph from arrays.
 
         Args:
-            edges: [E, 2], numbers of nodes. Loops are left out. Of parallel edges the cheapest stays.
+            edges: [E, 2], numbers of nodes. Loops and parallel edges are there where edges count; walks over nodes do
+                without.
             costs: [E], from 0 up; 1 each by default.
             node_count: N; by default the number of labels, or one more than the largest node of an edge.
             directed: edges lead one way, from the first node to the second.
@@ -226,7 +227,7 @@ class World:
         """A graph of networkx, of any of its four classes. The world does not change with it afterwards.
 
         Coordinates are the nodes' `pos`, or `x` and `y`, or `lon` and `lat`, or `longitude` and `latitude`, where all
-        nodes have them; else they are left out, with a warning. Of parallel edges the cheapest stays.
+        nodes have them; else they are left out, with a warning. Loops and parallel edges are those of `from_edges`.
 
         Args:
             graph: its nodes become the world's labels.
@@ -441,6 +442,16 @@ class World:
         ends, costs = self._core.edges
         return ends.reshape(-1, 2), costs
 
+    def all_edges(self) -> tuple[NDArray[np.int64], NDArray[np.float64], list[str]]:
+        """All edges, loops and parallel ones too, by the numbers that `Plan.walk_edges` has.
+
+        Returns:
+            Numbers of nodes, shape [E, 2]; costs, shape [E]; and what the edges are called, E of them, or none where no
+            edge has a label.
+        """
+        ends, costs = self._core.all_edges
+        return ends.reshape(-1, 2), costs, self._core.edge_labels
+
     def names(self, numbers: Iterable[int]) -> list[Node]:
         """What nodes are called, by their numbers: labels, `(row, column)` on a grid, else the numbers.
 
@@ -543,10 +554,10 @@ class World:
         if grid is not None:
             _, _, diagonals, cut_corners, frame = grid
             return _restore_grid, (core.name, np.array(self.blocked), diagonals, cut_corners, frame)
-        ends, costs = self.edges()
+        ends, costs, edge_labels = self.all_edges()
         state = (
             core.name, core.node_count, ends, costs, core.directed, self.blocked, core.labels, core.prizes,
-            core.places.reshape(-1, 2), core.unit, core.given,
+            core.places.reshape(-1, 2), core.unit, core.given, edge_labels,
         )  # fmt: skip
         return _restore_graph, (state, self._labels)
 

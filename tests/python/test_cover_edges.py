@@ -3,10 +3,13 @@
 import itertools
 import json
 import os
+import pickle
 import random
 
 import networkx as nx
 import pytest
+
+import graphdrl
 
 ROUNDS = int(os.environ.get("GRAPHDRL_ROUNDS", "15"))  # 100 by hand: two minutes
 
@@ -119,3 +122,111 @@ def test_resets_and_what_is_wrong(run, tmp_path):
     ]:
         process = run("graphdrl", "plan", *arguments)
         assert process.returncode == 2 and says in process.stderr and process.stderr.count("\n") == 1
+
+
+DOOR = """digraph { a -> b [label=go]; b -> b [label=stay]; b -> a [label=back]; a -> b [label=jump];
+b -> c [label=out]; c -> a [label=home]; c -> d [label=die]; }"""
+
+
+def done(run, *arguments):
+    """What the program prints."""
+    process = run("graphdrl", *arguments)
+    assert process.returncode == 0, process.stderr
+    return process.stdout
+
+
+def refused(run, *arguments):
+    """The line with which it refuses."""
+    process = run("graphdrl", *arguments)
+    assert process.returncode == 2 and process.stderr.count("\n") == 1, process.stderr
+    return process.stderr
+
+
+@pytest.fixture
+def door(tmp_path):
+    path = tmp_path / "door.dot"
+    path.write_text(DOOR)
+    return path
+
+
+@pytest.mark.parametrize("command", ["plan", "explore"])
+def test_python_covers_edges_as_the_program(command, door, tmp_path, run):
+    world = graphdrl.World.from_file(door)
+    walk = getattr(graphdrl, command)(world, cover="edges", reset_cost=2)
+    printed = json.loads(done(run, command, door, "--cover", "edges", "--reset-cost", "2", "--json"))
+    printed.pop("elapsed_s")
+    document = walk.to_dict()
+    document.pop("elapsed_s")
+    assert document == printed
+    assert walk.walk_edges == printed["walk_edges"] and walk.edges_walked == walk.edge_count == 7
+    assert walk.edge_bound == 7 and walk.optimal
+    assert walk.costs[-1] == walk.cost and len(walk.costs) == len(walk.walk)
+    again = pickle.loads(pickle.dumps(walk))
+    assert again.to_dict() | {"elapsed_s": 0, "policy": ""} == walk.to_dict() | {"elapsed_s": 0, "policy": ""}
+    walk.save(tmp_path / "walk.html")
+
+
+def test_explored_edges_are_known_step_by_step(door, run):
+    document = json.loads(done(run, "explore", door, "--cover", "edges", "--reset-cost", "1", "--price", "1", "--json"))
+    assert len(document["seen_after_step"]) == len(document["walk"]) == len(document["walk_edges"]) + 1
+    assert document["known"] == {"edges_walked": 7.0, "cost": 9.0}
+    assert document["price_of_ignorance"] == document["cost"] / 9
+
+
+def test_walks_over_edges_are_checked(door, tmp_path, run):
+    for command in ("plan", "explore"):
+        done(run, command, door, "--cover", "edges", "--reset-cost", "2", "--out", tmp_path / "walk.json")
+        text = done(run, "check", door, tmp_path / "walk.json")
+        assert "walked 7 of 7 edges, 100.0 %" in text
+        done(run, "report", tmp_path / "walk.json", "--map", door, "--out", tmp_path / "page.html")
+    (tmp_path / "walk").write_text("a b b a b c d\n")
+    assert "walked 6 of 7 edges" in done(run, "check", door, tmp_path / "walk", "--cover", "edges")
+    (tmp_path / "walk").write_text("a b b c d a b a b c a\n")
+    check = ("check", door, tmp_path / "walk", "--cover", "edges")
+    assert "no edge leads from node 3 to node 0, step 5" in refused(run, *check)
+    text = done(run, *check, "--reset-cost", "2")
+    assert "walked 7 of 7 edges, 100.0 %, for 11 of a budget of 11, 1 reset among it" in text
+    (tmp_path / "walk").write_text('{"walk": [0, 1], "walk_edges": [4], "cover": "edges"}')
+    assert "edge '4' does not lead from node 0 to node 1" in refused(run, "check", door, tmp_path / "walk")
+    (tmp_path / "walk").write_text('{"walk": [0, 1], "walk_edges": [], "cover": "edges"}')
+    assert "walk_edges" in refused(run, "check", door, tmp_path / "walk")
+
+
+def test_policies_are_compared_by_edges(door, run):
+    options = ["--maps", door, "--cover", "edges", "--budget", "5", "--start", "a", "--json"]
+    known = json.loads(done(run, "evaluate", *options))
+    assert [(row["policy"], row["mean"]) for row in known["rows"]] == [("search", pytest.approx(500 / 7))]
+    options = ["--maps", door, "--cover", "edges", "--reset-cost", "1", "--reveal", "edges", "--start", "a"]
+    unknown = json.loads(done(run, "evaluate", *options, "--until", "covered", "--price", "1", "--json"))
+    costs = {row["policy"]: row["mean"] for row in unknown["rows"]}
+    assert list(costs) == ["dfs", "nearest", "novelty"] and min(costs.values()) >= 9
+    assert all(row["known"]["mean"] == 9 for row in unknown["rows"])
+    assert "not all edges can be walked" in refused(
+        run,
+        "evaluate", "--maps", door, "--cover", "edges", "--until", "covered", "--start", "d"
+    )
+    assert "no such policy" in refused(run, "evaluate", "--maps", door, "--cover", "edges", "--policy", "best")
+    assert "resets go with" in refused(run, "evaluate", "--maps", door, "--reset-cost", "1")
+    rows = graphdrl.evaluate(graphdrl.World.from_file(door), "search", 5, cover="edges", episodes=3)
+    assert len(rows) == 1 and 0 < rows[0]["mean"] <= 100
+
+
+def test_bounds_are_those_of_edges(door):
+    world = graphdrl.World.from_file(door)
+    assert graphdrl.upper_bound(world, 3, cover="edges") == 3
+    assert graphdrl.upper_bound(world, 100, start="d", cover="edges") == 0
+    assert graphdrl.upper_bound(world, 100, start="c", cover="edges", reset_cost=1) == 7
+    for wrong in ({"cover": "faces"}, {"reset_cost": 1}, {"cover": "edges", "reset_cost": -1}):
+        with pytest.raises(graphdrl.Error):
+            graphdrl.upper_bound(world, 3, **wrong)
+
+
+def test_loops_and_parallel_edges_of_networkx_are_covered():
+    graph = nx.MultiGraph([("a", "b"), ("a", "b"), ("b", "b"), ("b", "c")])
+    world = graphdrl.World.from_networkx(graph)
+    walk = graphdrl.plan(world, cover="edges", end="start")
+    assert (walk.edges_walked, walk.edge_count, walk.cost) == (4, 4, 5)
+    ends, costs, labels = world.all_edges()
+    assert ends.tolist() == [[0, 1], [0, 1], [1, 1], [1, 2]] and costs.tolist() == [1] * 4 and labels == []
+    assert sorted(walk.walk_edges) == [0, 1, 2, 3, 3] and world.edge_count == 2
+    assert [part.tolist() for part in pickle.loads(pickle.dumps(world)).all_edges()[:2]] == [ends.tolist(), [1] * 4]

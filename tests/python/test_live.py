@@ -139,7 +139,7 @@ def test_what_is_wrong_gets_one_line(tmp_path):
     assert "anywhere or start" in refusal("explore", "--live", "--end", "7")
     assert "no such policy" in refusal("explore", "--live", "--policy", "best")
     assert "--transcript" in refusal("explore", "--live", "--sync")
-    assert "--live" in refusal("explore", "--cover", "edges")
+    assert "map is required" in refusal("explore", "--cover", "edges")
     assert "map" in refusal("explore")
     taken = tmp_path / "taken"
     taken.write_text("there\n", encoding="utf-8")

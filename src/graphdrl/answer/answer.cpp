@@ -130,7 +130,7 @@ std::vector<std::string> edge_summary(const Answer& answer) {
   }
   if (edges.all_cheapest) {
     lines.emplace_back("optimal: no walk over all edges is cheaper");
-  } else if (static_cast<double>(edges.walked) >= edges.bound) {
+  } else if (edges.optimal()) {
     lines.emplace_back("optimal: no walk has more edges");
   } else {
     lines.push_back(fmt::format("no walk has more than {} edges, {:.1f} %: the gap is {:.1f} points",

@@ -257,9 +257,12 @@ class EdgePlanner {
 
 }  // namespace
 
+Multigraph all_edges(const World& world) {
+  return world.multigraph() != nullptr ? *world.multigraph() : Multigraph{.edges = world.graph().edges()};
+}
+
 WalkableEdges walkable_edges(const World& world) {
-  const Multigraph all =
-      world.multigraph() != nullptr ? *world.multigraph() : Multigraph{.edges = world.graph().edges()};
+  const Multigraph all = all_edges(world);
   WalkableEdges walkable;
   for (std::size_t i = 0; i < all.edges.size(); ++i) {
     if (world.is_blocked(all.edges[i].a) || world.is_blocked(all.edges[i].b)) continue;

@@ -13,11 +13,14 @@
 
 namespace graphdrl {
 
-// The edges of a world that can be walked, loops and parallel ones too; numbers are those of the world's file, or of
-// Graph::edges() where that has no list of its own.
+// All edges of a world, loops and parallel ones too: those of its file, or Graph::edges() where that has no list of its
+// own.
+Multigraph all_edges(const World& world);
+
+// Those that can be walked.
 struct WalkableEdges {
   Multigraph graph;
-  std::vector<std::int64_t> numbers;  // [edges]
+  std::vector<std::int64_t> numbers;  // [edges], among all_edges()
 };
 WalkableEdges walkable_edges(const World& world);
 
@@ -29,6 +32,8 @@ struct EdgeCover {
   bool all_cheapest = false;              // it walks all, and none that does is cheaper
   std::string policy = {};                // what made it, where that was none of plan_nodes
   std::optional<double> reset_cost = {};  // of jumps to the start that walks may make
+  // Whether no walk has more edges, or if it has all, none is known to be cheaper.
+  bool optimal() const { return all_cheapest || static_cast<double>(walked) >= bound; }
   double percent(double count) const { return edges == 0 ? 100.0 : 100.0 * count / static_cast<double>(edges); }
 };
 

@@ -17,6 +17,8 @@ struct CheckOptions {
   std::string map;
   std::string walk;
   AskedText asked;
+  std::string cover = "nodes";
+  std::optional<double> reset_cost;
   MapOptions reading;
   std::vector<std::string> out;
   bool json = false;
@@ -31,14 +33,16 @@ void check(const CheckOptions& options) {
   const GivenTask& given = world.given();
   if (!asked.budget && given.budget) asked.budget = Budget(*given.budget);
   if (!asked.end && given.end != kNoNode) asked.end = End::at(given.end);
-  Answer answer = read_plan(world, options.walk, asked);
+  const bool edges = parse_cover(options.cover) == Cover::kEdges;
+  Answer answer = read_plan(world, options.walk, {.task = asked, .edges = edges, .reset_cost = options.reset_cost});
   check_walk(answer, options.walk);
   judge(answer);
   std::vector<std::function<void()>> outputs;
   for (const std::string& file : options.out) outputs.emplace_back([&] { write_plan(answer, file); });
   outputs.emplace_back([&] {
     if (options.json) return print_json(plan_json(answer));
-    print_text(fmt::format("{}: a walk of {} steps on {}\n{}\n", escaped(options.walk), answer.plan.walk.size() - 1,
+    print_text(fmt::format("{}: a walk of {} steps on {}\n{}\n", escaped(options.walk),
+                           answer.edges ? answer.edges->walk.edges.size() : answer.plan.walk.size() - 1,
                            escaped(world.name()), fmt::join(plan_summary(answer), "\n")));
   });
   attempt_all(outputs);
@@ -63,6 +67,16 @@ void add_check_command(CLI::App& app) {
   add_text_option(command, "--end", options->asked.end, "E",
                   "Where it must end: anywhere, start, or a node. The default is the map's, else the plan's, else "
                   "anywhere");
+  command
+      .add_option("--cover", options->cover,
+                  "What counts: nodes, or edges walked whole; the default is what the plan says, else nodes")
+      ->check(CLI::IsMember({"nodes", "edges"}));
+  command
+      .add_option(
+          "--reset-cost", options->reset_cost,
+          "Of --cover edges: what a jump back to the start costs. The default is the plan's, else there is none")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("C");
   add_text_option(
       command, "--out", options->out, "FILE",
       "Also write it to this file, in the format of its ending: " + plan_file_endings() + "; may be given again");

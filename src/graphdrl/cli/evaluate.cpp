@@ -7,6 +7,7 @@
 #include "graphdrl/cli/program.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/comparison.h"
+#include "graphdrl/live/edge_exploration.h"
 #include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
@@ -14,6 +15,8 @@ namespace {
 
 const std::vector<std::string> kLadder = {"random", "dfs", "nearest", "explorer", "guided", "search", "exact"};
 const std::vector<std::string> kOnlineLadder = {"random-walk", "dfs", "nearest", "pocket", "open", "explorer"};
+const std::vector<std::string> kEdgeLadder = {"search"};
+const std::vector<std::string> kOnlineEdgeLadder = {"random-walk", "dfs", "nearest", "novelty"};
 const std::vector<std::string> kUntilCoveredLadder(kOnlineLadder.begin() + 1, kOnlineLadder.end());  // all end
 
 struct EvaluateOptions {
@@ -25,6 +28,8 @@ struct EvaluateOptions {
   std::string score = "visited";
   std::string until;
   std::vector<std::string> believed;
+  std::string cover = "nodes";
+  std::optional<double> reset_cost;
   bool json = false;
 };
 
@@ -85,8 +90,18 @@ void evaluate(const EvaluateOptions& options) {
   comparison.reveal = Reveal::parse(options.reveal);
   comparison.score = parse_score(options.score);
   comparison.until_covered = !options.until.empty();
-  if (!comparison.reveal.all() && comparison.policies == kLadder) {
+  const bool edges = parse_cover(options.cover) == Cover::kEdges;
+  if (comparison.policies == kLadder && edges) {
+    comparison.policies = comparison.reveal.all() ? kEdgeLadder : kOnlineEdgeLadder;
+    if (comparison.until_covered) std::erase(comparison.policies, "random-walk");  // which may never end
+  } else if (comparison.policies == kLadder && !comparison.reveal.all()) {
     comparison.policies = comparison.until_covered ? kUntilCoveredLadder : kOnlineLadder;
+  }
+  if (edges) {
+    if (!options.believed.empty()) throw Error({.what = "old maps go with nodes", .got = "--cover edges"});
+    compare_edges(comparison, options.reset_cost);
+  } else if (options.reset_cost) {
+    throw Error({.what = "resets go with --cover edges"});
   }
   if (!options.believed.empty() && comparison.policies == kOnlineLadder) {
     comparison.policies.emplace_back(kBelievingPolicy);
@@ -147,6 +162,15 @@ void add_evaluate_command(CLI::App& app) {
       ->needs(reveal)
       ->capture_default_str();
   command
+      .add_option("--cover", options->cover, "What counts: nodes, or edges walked whole, loops and parallel ones too")
+      ->check(CLI::IsMember({"nodes", "edges"}))
+      ->capture_default_str();
+  command
+      .add_option("--reset-cost", options->reset_cost,
+                  "Of --cover edges where edges lead one way: what it costs to jump back to the start")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("C");
+  command
       .add_option("--believed", options->believed,
                   "Old maps for the policies that plan: as of --maps, as many and in the same order")
       ->needs(reveal)
@@ -155,7 +179,6 @@ void add_evaluate_command(CLI::App& app) {
       .add_option("--until", options->until,
                   "Instead of a budget: covered, until nothing is left that is known; costs are compared then")
       ->check(CLI::IsMember({"covered"}))
-      ->needs(reveal)
       ->excludes(command.get_option("--budget"));
   command
       .add_option(

@@ -241,18 +241,21 @@ void add_explore_command(CLI::App& app) {
   command.callback([options, &command] {
     if (options->live.live) {
       for (const CLI::Option* const option : command.get_options()) {
-        constexpr std::array kOthers = {"--budget", "--end", "--policy",     "--score",   "--connectivity",
-                                        "--seed",   "--out", "--think-time", "--threads", "--memory-limit"};
+        constexpr std::array kOthers = {"--cover",  "--reset-cost", "--budget",       "--end",
+                                        "--policy", "--score",      "--connectivity", "--seed",
+                                        "--out",    "--think-time", "--threads",      "--memory-limit"};
         const bool goes_with = option->get_group() == kWithLive || option->get_name() == "--live" ||
                                std::ranges::find(kOthers, option->get_name()) != kOthers.end();
         if (option->count() > 0 && !goes_with) throw CLI::ExcludesError("--live", option->get_name());
       }
       const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
       return explore_live(options->live,
-                          {.budget = options->asked.budget,
+                          {.cover = options->cover,
+                           .reset_cost = options->reset_cost,
+                           .budget = options->asked.budget,
                            .end = options->asked.end,
                            .score = given("--score") ? options->score : "",
-                           .connectivity = given("--connectivity") ? options->reading.diagonals ? 8 : 4 : 8,
+                           .connectivity = given("--connectivity") && !options->reading.diagonals ? 4 : 8,
                            .policy = options->request.policy,
                            .think_s = options->think_time_s,
                            .seed = options->request.seed,

@@ -67,6 +67,7 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
   }
   const auto n = static_cast<std::size_t>(arrays.node_count);
   require_length(arrays.costs.size(), arrays.edges.size() / 2, "costs");
+  require_length(arrays.labels.size(), arrays.edges.size() / 2, "labels of edges");
   require_length(map.blocked.size(), n, "blocked");
   require_length(map.labels.size(), n, "labels");
   require_length(map.prizes.size(), n, "prizes");
@@ -93,8 +94,8 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
     throw Error({.what = fmt::format("bad coordinates of node {}", i), .expected = "finite numbers"});
   }
   if (map.blocked.empty()) map.blocked.resize(n);
-  map.graph = Graph::from_edges(static_cast<NodeId>(arrays.node_count), edges,
-                                arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
+  set_edges(map, static_cast<NodeId>(arrays.node_count), {.edges = std::move(edges), .labels = arrays.labels},
+            arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
   return World(std::move(name), std::move(map));
 }
 

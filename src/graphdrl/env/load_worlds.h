@@ -24,6 +24,7 @@ struct EdgeArrays {
   std::span<const std::int64_t> edges = {};  // [2E], pairs of nodes
   std::span<const double> costs = {};        // [E]; empty where each is 1
   bool directed = false;
+  std::vector<std::string> labels = {};  // [E]; empty where no edge has one
 };
 
 // The world of these edges; `map` has all but the graph, and what is empty in it is not there. Throws Error on lengths

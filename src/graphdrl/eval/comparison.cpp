@@ -45,7 +45,9 @@ struct Contender {
 std::vector<Contender> make_contenders(const ComparisonOptions& options) {
   std::vector<Contender> contenders;
   for (const std::string& name : options.policies) {
-    if (const auto own = options.own_policies.find(name); own != options.own_policies.end()) {
+    if (options.counts_edges()) {
+      contenders.push_back({.label = name, .plans = false, .believes = false, .make = {}});
+    } else if (const auto own = options.own_policies.find(name); own != options.own_policies.end()) {
       contenders.push_back({name, false, false, [make = own->second](auto&&...) { return make(); }});
     } else {
       const auto spec = std::make_shared<const PolicySpec>(parse_policy(name));
@@ -89,6 +91,11 @@ struct KnownResult {
 std::optional<KnownResult> known_result(const World& world, const Task& task, const ComparisonOptions& options,
                                         const Clock& clock) {
   if (options.score == Score::kSeen) return std::nullopt;
+  if (options.counts_edges()) {
+    if (!options.price_s) return std::nullopt;
+    const auto [percent, cost] = options.cover_known_edges(world, task);
+    return KnownResult{options.until_covered ? cost : percent, /*optimal=*/false};
+  }
   if (world.valid_count() <= kOptimumMaxNodes && !options.until_covered) {
     if (const auto prize = exact_prize(task)) return KnownResult{world.percent_of_all(*prize), /*optimal=*/true};
   }
@@ -128,7 +135,7 @@ void check_options(const std::vector<World>& worlds, const ComparisonOptions& op
   if (options.price_s && options.score == Score::kSeen) {
     throw Error({.what = "the price of ignorance is that of nodes visited", .got = "the score seen"});
   }
-  if (options.until_covered && (options.reveal.all() || options.budget)) {
+  if (options.until_covered && ((options.reveal.all() && !options.counts_edges()) || options.budget)) {
     throw Error({.what = "until covered goes with maps that are not known, and without a budget"});
   }
   if (!options.believed.empty() && (options.reveal.all() || options.believed.size() != worlds.size())) {
@@ -141,7 +148,7 @@ void check_options(const std::vector<World>& worlds, const ComparisonOptions& op
     throw Error({.what = "the price of ignorance is that of maps that are not known", .got = "a reveal of all"});
   }
   const auto one_way = [](const World& world) { return world.open().directed(); };
-  if (options.until_covered && std::ranges::any_of(worlds, one_way)) {
+  if (options.until_covered && !options.counts_edges() && std::ranges::any_of(worlds, one_way)) {
     throw Error({.what = "costs until covered cannot be compared where edges lead one way",
                  .where = std::ranges::find_if(worlds, one_way)->name()});
   }
@@ -228,6 +235,16 @@ Results measure(const std::vector<Arena>& arenas, const std::vector<Contender>& 
     const Arena& arena = arenas[block.map];
     const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
     const std::uint64_t block_seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0]));
+    if (options.counts_edges()) {
+      for (const int episode : block.episodes) {
+        Task task = arena.task;
+        task.start_at(arena.starts[episode]);
+        const std::uint64_t seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(episode));
+        const auto [percent, cost] = options.cover_edges(arena.world, task, contenders[block.policy].label, seed);
+        measured[block.policy][block.map][episode] = options.until_covered ? cost : percent;
+      }
+      return;
+    }
     const auto believed = options.believed.empty() ? nullptr : options.believed[block.map];
     const auto policy = contenders[block.policy].make(block_seed, believed);
     std::vector<NodeId> starts;

@@ -49,6 +49,16 @@ struct ComparisonOptions {
   std::vector<std::string> families = {};  // [worlds] or empty: the family of each, to be summarised by
   // Policies of the caller's own, by names of `policies` that are theirs. Several may be at work at once.
   std::map<std::string, std::function<std::unique_ptr<Policy>()>> own_policies = {};
+  // Where edges count instead of nodes: answers a task by a policy of a name. Empty: nodes count.
+  struct Walked {
+    double percent;  // of the edges
+    double cost;
+  };
+  std::function<Walked(const World& world, const Task& task, const std::string& policy, std::uint64_t seed)>
+      cover_edges = {};
+  // The same, knowing the map, in price_s.
+  std::function<Walked(const World& world, const Task& task)> cover_known_edges = {};
+  bool counts_edges() const { return cover_edges != nullptr; }
 };
 
 inline constexpr int kOptimumMaxNodes = 25;  // valid nodes up to which the optimum is computed

@@ -74,6 +74,9 @@ std::string by_share(const std::vector<ComparisonRow>& rows, const IsSo& is_so, 
 }
 
 std::string what_is_measured(const Comparison& comparison) {
+  if (comparison.options.counts_edges()) {
+    return comparison.options.until_covered ? "Cost until no edge is left" : "Edges walked, in %";
+  }
   if (comparison.options.until_covered) return "Cost until nothing is left that is known";
   return by_share(comparison.rows, [](const ComparisonRow& row) { return row.has_prizes; },
                   {.none = "Coverage of the valid nodes in %",
@@ -121,12 +124,14 @@ std::string ends_of(const Comparison& comparison) {
 
 std::string format_comparison(const Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
-  std::string text = fmt::format(
-      "{}{}, budget {}, {}{}\n\n", what_is_measured(comparison),
-      options.reveal.all() ? ""
-                           : fmt::format(", nodes {}, of unknown maps that reveal {}",
-                                         options.score == Score::kSeen ? "seen" : "visited", options.reveal.text()),
-      budgets_of(comparison), starts_of(comparison), ends_of(comparison));
+  std::string text = fmt::format("{}{}, budget {}, {}{}\n\n", what_is_measured(comparison),
+                                 options.reveal.all() ? ""
+                                                      : fmt::format(", {}of unknown maps that reveal {}",
+                                                                    options.counts_edges()          ? ""
+                                                                    : options.score == Score::kSeen ? "nodes seen, "
+                                                                                                    : "nodes visited, ",
+                                                                    options.reveal.text()),
+                                 budgets_of(comparison), starts_of(comparison), ends_of(comparison));
   std::size_t name_width = 11;
   for (const ComparisonRow& row : comparison.rows) {
     name_width = std::max({name_width, row.map.size(), row.policy.size()});
@@ -146,7 +151,7 @@ std::string format_comparison(const Comparison& comparison) {
     return std::any_of(comparison.rows.begin(), comparison.rows.end(),
                        [&](const ComparisonRow& row) { return !is_there(row); });
   };
-  const bool has_optimum = !options.until_covered && options.score == Score::kVisited;
+  const bool has_optimum = !options.until_covered && options.score == Score::kVisited && !options.counts_edges();
   if (has_optimum && missing([](const ComparisonRow& row) { return row.optimum.has_value(); })) {
     text += fmt::format("\noptimum –: not computed for maps of more than {} valid nodes or {} states\n",
                         kOptimumMaxNodes, kExactMaxStates);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "graphdrl/graph/graph.h"
@@ -52,6 +53,13 @@ struct GraphMap {
 // The edges of a map as its file holds them, loops and parallel ones too.
 inline Multigraph all_edges(const GraphMap& map) {
   return map.multigraph ? *map.multigraph : Multigraph{.edges = map.graph.edges()};
+}
+
+// Gives a map edges, and their list where its graph has not all of them, or they have labels.
+inline void set_edges(GraphMap& map, NodeId node_count, Multigraph all, EdgeKind kind) {
+  map.graph = Graph::from_edges(node_count, all.edges, kind);
+  const bool whole = std::ssize(all.edges) == map.graph.edge_count() && all.labels.empty();
+  map.multigraph = whole ? nullptr : std::make_shared<const Multigraph>(std::move(all));
 }
 
 }  // namespace graphdrl

@@ -238,12 +238,9 @@ GraphMap GraphBuilder::build() {
   }
   EdgeList all = take_edges();
   GraphMap map;
-  map.graph = Graph::from_edges(count, all.edges, directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
-  if (std::ssize(all.edges) > map.graph.edge_count() || !all.labels.empty()) {
-    if (!all.labels.empty()) all.labels.resize(all.edges.size());
-    map.multigraph =
-        std::make_shared<const Multigraph>(Multigraph{.edges = std::move(all.edges), .labels = std::move(all.labels)});
-  }
+  if (!all.labels.empty()) all.labels.resize(all.edges.size());
+  set_edges(map, count, {.edges = std::move(all.edges), .labels = std::move(all.labels)},
+            directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
   map.blocked = std::move(blocked_);
   if (std::any_of(prize_.begin(), prize_.end(), [](double prize) { return prize != 1; })) {
     prize_.resize(count, 1.0);

@@ -11,6 +11,7 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/random.h"
 #include "graphdrl/live/live_exploration.h"
+#include "graphdrl/planners/registry.h"
 
 namespace graphdrl {
 namespace {
@@ -159,6 +160,43 @@ Answer explore_edges(const World& world, const Task& task, const PlanRequest& re
 Answer answer_task(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
   const bool explores_edges = request.cover == Cover::kEdges && !request.reveal.all();
   return explores_edges ? explore_edges(world, task, request, clock) : make_plan(world, task, request, clock);
+}
+
+void compare_edges(ComparisonOptions& options, std::optional<double> reset_cost) {
+  for (const std::string& policy : options.policies) {
+    if (options.reveal.all()) {
+      parse_policy(policy);
+    } else {
+      const LiveExploration trial({.policy = policy});
+    }
+  }
+  const auto walked = [](const Answer& answer) {
+    return ComparisonOptions::Walked{answer.edges->percent(static_cast<double>(answer.edges->walked)),
+                                     answer.plan.cost};
+  };
+  PlanRequest request{.reveal = options.reveal,
+                      .score = options.score,
+                      .cover = Cover::kEdges,
+                      .reset_cost = reset_cost,
+                      .until_covered = options.until_covered};
+  options.cover_edges = [request, walked](const World& world, const Task& task, const std::string& policy,
+                                          std::uint64_t seed) {
+    PlanRequest one = request;
+    one.policy = policy;
+    one.seed = seed;
+    const Answer answer = answer_task(world, task, one);
+    if (one.until_covered && answer.edges->walked < answer.edges->edges) {
+      throw Error({.what = "costs until covered cannot be compared where not all edges can be walked",
+                   .got = fmt::format("{} of {} by {}", answer.edges->walked, answer.edges->edges, policy),
+                   .where = world.name()});
+    }
+    return walked(answer);
+  };
+  options.cover_known_edges = [request, walked, price_s = options.price_s](const World& world, const Task& task) {
+    PlanRequest one = request;
+    one.reveal = Reveal();
+    return walked(answer_task(world, task, one, Clock().at_most(price_s.value_or(kNoLimit))));
+  };
 }
 
 }  // namespace graphdrl

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "graphdrl/answer/answer.h"
+#include "graphdrl/eval/comparison.h"
 
 namespace graphdrl {
 
@@ -12,5 +13,8 @@ namespace graphdrl {
 // Throws Error on what does not go with edges: seen nodes that count, another reveal, an old map, policies of one's
 // own, an end that is not the start.
 Answer answer_task(const World& world, const Task& task, const PlanRequest& request, const Clock& clock = {});
+
+// Makes a comparison one of edges, of walks as answer_task() makes them. Throws Error on policies that there are not.
+void compare_edges(ComparisonOptions& options, std::optional<double> reset_cost);
 
 }  // namespace graphdrl

@@ -181,6 +181,31 @@ std::string format_walk(const World& world, std::span<const NodeId> walk) {
 
 namespace {
 
+// By the time the walk leaves each node of the plan's walk, which has no loops.
+std::vector<double> costs_over_edges(const World& world, const EdgeWalk& walk, double reset_cost) {
+  const Multigraph all = all_edges(world);
+  std::vector<double> costs = {0};
+  for (std::size_t i = 0; i < walk.edges.size(); ++i) {
+    const std::int64_t edge = walk.edges[i];
+    const double cost = edge == EdgeWalk::kResetEdge ? reset_cost : all.edges[static_cast<std::size_t>(edge)].cost;
+    if (walk.nodes[i] != walk.nodes[i + 1]) costs.push_back(costs.back());
+    costs.back() += cost;
+  }
+  return costs;
+}
+
+// How many nodes were seen at each step of a walk over edges, loops among them, which show nothing.
+std::vector<int> seen_with_loops(const Answer& answer) {
+  const std::vector<NodeId>& walk = answer.edges->walk.nodes;
+  std::vector<int> seen;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < walk.size(); ++i) {
+    if (i > 0 && walk[i] != walk[i - 1]) ++at;
+    seen.push_back(answer.discovered.after_step[at]);
+  }
+  return seen;
+}
+
 // What a walk over edges has beside its nodes.
 void add_edges(const Answer& answer, nlohmann::ordered_json& json) {
   const EdgeCover& edges = *answer.edges;
@@ -201,12 +226,13 @@ void add_edges(const Answer& answer, nlohmann::ordered_json& json) {
   json["upper_bound"] = edges.percent(edges.bound);
   json["max_edges"] = static_cast<std::int64_t>(edges.bound);
   json["gap"] = edges.percent(edges.bound - static_cast<double>(edges.walked));
-  json["optimal"] = edges.all_cheapest || static_cast<double>(edges.walked) >= edges.bound;
+  json["optimal"] = edges.optimal();
 }
 
 }  // namespace
 
 std::vector<double> costs_so_far(const Answer& answer) {
+  if (answer.edges) return costs_over_edges(answer.world, answer.edges->walk, answer.edges->reset_cost.value_or(0));
   const Graph& open = answer.world.open();
   std::vector<double> costs = {0};
   const std::vector<NodeId>& walk = answer.plan.walk;
@@ -252,7 +278,7 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
     json["score"] = answer.score == Score::kSeen ? "seen" : "visited";
     json["seen"] = answer.discovered.nodes.size();
     json["seen_nodes"] = answer.discovered.nodes;
-    json["seen_after_step"] = answer.discovered.after_step;
+    json["seen_after_step"] = answer.edges ? seen_with_loops(answer) : answer.discovered.after_step;
     if (!answer.task.ends_anywhere()) json["no_way_back"] = answer.discovered.no_way_back;
   }
   if (answer.known) {

@@ -13,7 +13,7 @@ namespace graphdrl {
 // The document that `graphdrl plan --json` prints.
 nlohmann::ordered_json plan_json(const Answer& answer);
 
-// The cost so far at every node of the walk.
+// The cost so far at every node of the plan's walk; over edges, with the loops that are walked there.
 std::vector<double> costs_so_far(const Answer& answer);
 
 // The walk, a node a line below a header: node ids, with the labels beside them. read_plan() reads it.
@@ -37,10 +37,19 @@ std::string plan_file_endings();
 // costs and anywhere; policy, bound and what was seen what the document says, else the file's name, none and the whole
 // map. Throws Error, naming the file and the line, also where a step follows no edge, and where several lines of
 // several words leave open which of them are nodes.
-Answer read_plan(const World& world, const std::string& file, const Asked& asked = {});
+//
+// Edges count where that is asked for, or the document says so. It says which ones were walked, too; else each step
+// takes the cheapest edge that was not walked yet, if there is one, and a step without an edge to the start is a reset,
+// where these have a cost.
+struct AskedOfPlan {
+  Asked task = {};
+  bool edges = false;
+  std::optional<double> reset_cost = {};  // where edges count; the default is the document's, else there are none
+};
+Answer read_plan(const World& world, const std::string& file, const AskedOfPlan& asked = {});
 
 // The same for a text; `file` is for error messages.
-Answer parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked = {});
+Answer parse_plan(const World& world, const std::string& text, const std::string& file, const AskedOfPlan& asked = {});
 
 // Throws Error, naming `file`, if the plan's walk costs more than the task's budget or does not end where it must.
 void check_walk(const Answer& answer, const std::string& file);

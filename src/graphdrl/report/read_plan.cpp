@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
@@ -131,10 +132,68 @@ std::optional<End> end_in(const nlohmann::json& document, const World& world, co
   return End::at(checked_node(world, end->get<std::int64_t>(), file + ": end"));
 }
 
+// A walk over edges: `nodes`, with the edges between them as the document says, else the likeliest ones.
+EdgeWalk edge_walk(const World& world, std::vector<NodeId> nodes, const nlohmann::json& document,
+                   std::optional<double> reset_cost, const std::string& file) {
+  const Multigraph all = all_edges(world);
+  const auto joins = [&](std::int64_t edge, NodeId from, NodeId to) {
+    const Edge& one = all.edges[static_cast<std::size_t>(edge)];
+    return (one.a == from && one.b == to) || (!world.open().directed() && one.a == to && one.b == from);
+  };
+  std::map<std::pair<NodeId, NodeId>, std::vector<std::int64_t>> between;  // cheapest first
+  for (std::size_t i = 0; i < all.edges.size(); ++i) {
+    const auto& [a, b, cost] = all.edges[i];
+    if (world.is_blocked(a) || world.is_blocked(b)) continue;
+    between[{a, b}].push_back(static_cast<std::int64_t>(i));
+    if (!world.open().directed() && a != b) between[{b, a}].push_back(static_cast<std::int64_t>(i));
+  }
+  const auto cost_of = [&](std::int64_t edge) { return all.edges[static_cast<std::size_t>(edge)].cost; };
+  for (auto& [ends, edges] : between) std::ranges::stable_sort(edges, {}, cost_of);
+  const auto said = document.is_object() ? document.find("walk_edges") : document.end();
+  const bool says = said != document.end() && said->is_array() && said->size() + 1 == nodes.size();
+  if (document.is_object() && said != document.end() && !says) {
+    throw Error({.what = "bad walk_edges", .expected = "one for each step", .got = shortened(*said), .where = file});
+  }
+  std::vector<bool> walked(all.edges.size());
+  EdgeWalk walk{.nodes = std::move(nodes)};
+  for (std::size_t i = 1; i < walk.nodes.size(); ++i) {
+    const NodeId from = walk.nodes[i - 1];
+    const NodeId to = walk.nodes[i];
+    std::int64_t edge = EdgeWalk::kResetEdge;
+    const auto refuse = [&](const std::string& what) {
+      throw Error(
+          {.what = fmt::format("not a walk: {} from node {} to node {}, step {}", what, from, to, i), .where = file});
+    };
+    if (says && !(*said)[i - 1].is_null()) {
+      const nlohmann::json& number = (*said)[i - 1];
+      const bool good = number.is_number_unsigned() && number.get<std::uint64_t>() < all.edges.size() &&
+                        joins(number.get<std::int64_t>(), from, to);
+      if (!good) refuse(fmt::format("edge {} does not lead", shortened(number)));
+      edge = number.get<std::int64_t>();
+    } else if (const auto found = between.find({from, to}); !says && found != between.end()) {
+      const auto fresh = std::ranges::find_if(found->second, [&](std::int64_t one) { return !walked[one]; });
+      edge = fresh != found->second.end() ? *fresh : found->second.front();
+    }
+    if (edge == EdgeWalk::kResetEdge) {
+      if (!reset_cost || to != walk.nodes.front()) refuse("no edge leads");
+      walk.cost += *reset_cost;
+    } else {
+      walked[edge] = true;
+      walk.cost += cost_of(edge);
+    }
+    walk.edges.push_back(edge);
+  }
+  return walk;
+}
+
 // What it says of the plan.
 void read_claims(const World& world, const nlohmann::json& document, Answer& answer) {
   if (const auto policy = document.find("policy"); policy != document.end() && policy->is_string()) {
     answer.policy = *policy;
+  }
+  if (answer.edges) {
+    if (const auto bound = number_at(document, "max_edges")) answer.edges->bound = *bound;
+    return;
   }
   if (const auto bound = number_at(document, "upper_bound")) answer.plan.bound = *bound / 100 * world.total_prize();
   if (!world.has_prizes()) answer.plan.bound = std::round(answer.plan.bound);
@@ -158,7 +217,15 @@ void read_discovery(const World& world, const nlohmann::json& document, const st
   if (const auto& list = answer.discovered.nodes; std::ssize(std::set(list.begin(), list.end())) != std::ssize(list)) {
     throw Error({.what = "bad seen_nodes", .expected = "each node once", .got = shortened(*nodes), .where = file});
   }
-  const std::vector<std::int64_t> after_step = numbers(*counts, "seen_after_step");
+  std::vector<std::int64_t> after_step = numbers(*counts, "seen_after_step");
+  if (answer.edges && after_step.size() == answer.edges->walk.nodes.size()) {  // with loops
+    const std::vector<NodeId>& walk = answer.edges->walk.nodes;
+    std::size_t kept = 1;
+    for (std::size_t i = 1; i < walk.size(); ++i) {
+      if (walk[i] != walk[i - 1]) after_step[kept++] = after_step[i];
+    }
+    after_step.resize(kept);
+  }
   if (std::ssize(after_step) != std::ssize(answer.plan.walk) || !std::ranges::is_sorted(after_step) ||
       after_step.front() < 1 || after_step.back() != std::ssize(answer.discovered.nodes)) {
     throw Error({.what = "bad seen_after_step",
@@ -177,29 +244,40 @@ void read_discovery(const World& world, const nlohmann::json& document, const st
 
 }  // namespace
 
-Answer read_plan(const World& world, const std::string& file, const Asked& asked) {
+Answer read_plan(const World& world, const std::string& file, const AskedOfPlan& asked) {
   return parse_plan(world, read_file(file), file, asked);
 }
 
-Answer parse_plan(const World& world, const std::string& text, const std::string& file, const Asked& asked) {
+Answer parse_plan(const World& world, const std::string& text, const std::string& file, const AskedOfPlan& asked) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_json = begin != std::string::npos && (text[begin] == '{' || text[begin] == '[');
   const nlohmann::json document = is_json ? parse_json(text, file) : nlohmann::json();
   std::vector<NodeId> walk = is_json ? walk_of_json(world, document, file) : walk_of_lines(world, text, file);
   if (walk.empty()) throw Error({.what = "the walk is empty", .expected = "at least a start", .where = file});
-  check_steps(world, walk, file);
-  const Task any(world, walk.front(), kNoLimit);
-  Plan plan = plan_of_walk(any, std::move(walk));
-  const End end = asked.end.value_or(end_in(document, world, file).value_or(End::anywhere()));
-  const auto task = [&] {
+  const NodeId start = walk.front();
+  const End end = asked.task.end.value_or(end_in(document, world, file).value_or(End::anywhere()));
+  // within: what it costs.
+  const auto task = [&](double within) {
     try {
-      const Budget said(number_at(document, "budget").value_or(plan.cost));
-      return Task(world, {.budget = asked.budget.value_or(said), .start = plan.walk.front(), .end = end});
+      const Budget said(number_at(document, "budget").value_or(within));
+      return Task(world, {.budget = asked.task.budget.value_or(said), .start = start, .end = end});
     } catch (const Error& error) {
       throw Error({.what = error.what(), .where = file});
     }
   };
-  Answer answer{.world = world, .task = task(), .policy = file, .plan = std::move(plan)};
+  const auto answered = [&] {
+    if (asked.edges || (document.is_object() && document.value("cover", nlohmann::json()) == "edges")) {
+      const auto reset_cost = asked.reset_cost ? asked.reset_cost : number_at(document, "reset_cost");
+      EdgeWalk edges = edge_walk(world, std::move(walk), document, reset_cost, file);
+      const Task within = task(edges.cost);
+      return edge_answer(world, within, judge_edges(world, within, reset_cost, std::move(edges)), file);
+    }
+    check_steps(world, walk, file);
+    Plan plan = plan_of_walk(Task(world, start, kNoLimit), std::move(walk));
+    Task within = task(plan.cost);
+    return Answer{.world = world, .task = std::move(within), .policy = file, .plan = std::move(plan)};
+  };
+  Answer answer = answered();
   if (document.is_object()) {
     read_claims(world, document, answer);
     read_discovery(world, document, file, answer);
