@@ -155,6 +155,9 @@ void bind_planning(nb::module_& module) {
           "edge_count",
           [](const Answer& answer) { return answer.edges ? std::optional(answer.edges->edges) : std::nullopt; })
       .def_prop_ro(
+          "edge_prize",
+          [](const Answer& answer) { return answer.edges ? std::optional(answer.edges->prize) : std::nullopt; })
+      .def_prop_ro(
           "edge_bound",
           [](const Answer& answer) { return answer.edges ? std::optional(answer.edges->bound) : std::nullopt; })
       .def_prop_ro("summary", [](const Answer& answer) { return plan_summary(answer); })

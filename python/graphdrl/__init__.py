@@ -6,11 +6,12 @@ from .planning import Plan, evaluate, explore, plan, set_threads, upper_bound
 from .policies import Explorer, FirstVisits, PaperNetwork, Policy
 from .registration import register_environments
 from .training import Run, resume, train
-from .world import World
+from .world import Edges, World
 
 __all__ = [
     "FAMILIES",
     "Cells",
+    "Edges",
     "Error",
     "Explorer",
     "FirstVisits",

@@ -101,8 +101,13 @@ class Plan:
         return self._core.edge_count
 
     @property
+    def edge_prize(self) -> float | None:
+        """What the edges walked are worth, where edges count, by their prizes or 1 each; else None."""
+        return self._core.edge_prize
+
+    @property
     def edge_bound(self) -> float | None:
-        """No walk within the budget has more edges, where edges count; else None."""
+        """No walk within the budget has a higher `edge_prize`, where edges count; else None."""
         return self._core.edge_bound
 
     @property

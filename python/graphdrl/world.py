@@ -6,7 +6,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Hashable, Iterable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -72,6 +72,19 @@ def flat_of(values: ArrayLike | None, dtype: type, name: str, kinds: str, count:
     if array.shape != (count,):
         raise Error(f"bad shape of {name}: expected ({count},), got {array.shape}")
     return array
+
+
+class Edges(NamedTuple):
+    """All edges of a world, E of them."""
+
+    ends: NDArray[np.int64]
+    """Numbers of nodes, shape [E, 2]."""
+    costs: NDArray[np.float64]
+    """Shape [E]."""
+    labels: list[str]
+    """What they are called; empty where no edge has a label."""
+    prizes: NDArray[np.float64]
+    """What walking one for the first time is worth, shape [E]; empty where that is 1."""
 
 
 class World:
@@ -163,6 +176,7 @@ class World:
         places: ArrayLike | None = None,
         unit: str = "",
         labels: Sequence[Node] | None = None,
+        edge_prizes: ArrayLike | None = None,
         name: str = "graph",
     ) -> World:
         """A graph from arrays.
@@ -178,6 +192,8 @@ class World:
             places: [N, 2], x to the right and y upward, in `unit`; for pictures and files.
             unit: of `places`: `degrees` for longitude and latitude.
             labels: N different hashable values; by default the nodes are called by their numbers.
+            edge_prizes: [E], from 0 up, what walking each edge for the first time is worth, where edges count; 1 each
+                by default.
             name: of the world.
 
         Raises:
@@ -211,6 +227,8 @@ class World:
             points,
             text(unit, "unit"),
             (None, _NO_NODE, _NO_NODE),
+            [],
+            flat_of(edge_prizes, np.float64, "edge_prizes", "fiu", len(ends)),
         )
         return cls(core, labels)
 
@@ -234,7 +252,7 @@ class World:
             cost: the edges' attribute; by default, as of files, the first of `weight`, `cost`, `length` and `distance`
                 that an edge has. An edge without it costs 1; with `"none"` every edge does.
             prize: the nodes' attribute; by default `prize` or `score`. A node without it is worth 1; with `"none"`
-                every node is.
+                every node is. Edges are worth their `prize`, where they count.
             blocked: the nodes' attribute for obstacles.
             name: of the world; by default the graph's.
 
@@ -248,8 +266,10 @@ class World:
         numbers = {label: number for number, label in enumerate(labels)}
         links = list(graph.edges(data=True))
         data = [graph.nodes[label] for label in labels]
-        costs = _amounts(cost, _core.COST_NAMES, [of_edge for _, _, of_edge in links], "cost", "edge")
+        of_edges = [of_edge for _, _, of_edge in links]
+        costs = _amounts(cost, _core.COST_NAMES, of_edges, "cost", "edge")
         prizes = _amounts(prize, _core.PRIZE_NAMES, data, "prize", "node")
+        edge_prizes = _amounts(None, _core.EDGE_PRIZE_NAMES, of_edges, "prize", "edge")
         text(blocked, "blocked")
         places, unit = _places_of(data)
         return cls.from_edges(
@@ -262,6 +282,7 @@ class World:
             places=places,
             unit=unit,
             labels=None if labels == list(range(len(labels))) and all(type(x) is int for x in labels) else labels,
+            edge_prizes=edge_prizes,
             name=str(graph.name or "graph") if name is None else name,
         )
 
@@ -442,15 +463,10 @@ class World:
         ends, costs = self._core.edges
         return ends.reshape(-1, 2), costs
 
-    def all_edges(self) -> tuple[NDArray[np.int64], NDArray[np.float64], list[str]]:
-        """All edges, loops and parallel ones too, by the numbers that `Plan.walk_edges` has.
-
-        Returns:
-            Numbers of nodes, shape [E, 2]; costs, shape [E]; and what the edges are called, E of them, or none where no
-            edge has a label.
-        """
+    def all_edges(self) -> Edges:
+        """All edges, loops and parallel ones too, by the numbers that `Plan.walk_edges` has."""
         ends, costs = self._core.all_edges
-        return ends.reshape(-1, 2), costs, self._core.edge_labels
+        return Edges(ends.reshape(-1, 2), costs, self._core.edge_labels, self._core.edge_prizes)
 
     def names(self, numbers: Iterable[int]) -> list[Node]:
         """What nodes are called, by their numbers: labels, `(row, column)` on a grid, else the numbers.
@@ -554,10 +570,11 @@ class World:
         if grid is not None:
             _, _, diagonals, cut_corners, frame = grid
             return _restore_grid, (core.name, np.array(self.blocked), diagonals, cut_corners, frame)
-        ends, costs, edge_labels = self.all_edges()
+        ends, costs, edge_labels, edge_prizes = self.all_edges()
         state = (
             core.name, core.node_count, ends, costs, core.directed, self.blocked, core.labels, core.prizes,
             core.places.reshape(-1, 2), core.unit, core.given, edge_labels,
+            edge_prizes,
         )  # fmt: skip
         return _restore_graph, (state, self._labels)
 

@@ -226,7 +226,36 @@ def test_loops_and_parallel_edges_of_networkx_are_covered():
     world = graphdrl.World.from_networkx(graph)
     walk = graphdrl.plan(world, cover="edges", end="start")
     assert (walk.edges_walked, walk.edge_count, walk.cost) == (4, 4, 5)
-    ends, costs, labels = world.all_edges()
-    assert ends.tolist() == [[0, 1], [0, 1], [1, 1], [1, 2]] and costs.tolist() == [1] * 4 and labels == []
+    edges = world.all_edges()
+    assert edges.ends.tolist() == [[0, 1], [0, 1], [1, 1], [1, 2]] and edges.costs.tolist() == [1] * 4
+    assert edges.labels == [] and edges.prizes.tolist() == []
     assert sorted(walk.walk_edges) == [0, 1, 2, 3, 3] and world.edge_count == 2
-    assert [part.tolist() for part in pickle.loads(pickle.dumps(world)).all_edges()[:2]] == [ends.tolist(), [1] * 4]
+    again = pickle.loads(pickle.dumps(world)).all_edges()
+    assert again.ends.tolist() == edges.ends.tolist() and again.costs.tolist() == [1] * 4
+
+
+def test_edges_have_prizes_of_their_own(tmp_path, run):
+    graph = nx.DiGraph()
+    graph.add_edge("a", "b", prize=5)
+    graph.add_edge("b", "a")
+    graph.add_edge("a", "c", prize=0)
+    graph.add_edge("c", "a", prize=2.5)
+    for name, text in {
+        "g.json": json.dumps(nx.node_link_data(graph, edges="links")),
+        "g.graphml": "\n".join(nx.generate_graphml(graph)),
+        "g.dot": "digraph { a -> b [prize=5]; b -> a; a -> c [prize=0]; c -> a [prize=2.5]; }",
+    }.items():
+        (tmp_path / name).write_text(text)
+        for ending in ("json", "graphml", "dot"):  # written and read again
+            done(run, "maps", "convert", tmp_path / name, "--out", tmp_path / f"again.{ending}")
+            walk = json.loads(
+                done(run, "plan", tmp_path / f"again.{ending}", "--cover", "edges", "--budget", "2", "--json")
+            )
+            assert (walk["edge_prize"], walk["max_edge_prize"], walk["optimal"]) == (6, 6, True)
+    world = graphdrl.World.from_networkx(graph)
+    for same in (world, pickle.loads(pickle.dumps(world)), graphdrl.World.from_file(tmp_path / "g.dot")):
+        assert same.all_edges().prizes.tolist() == [5, 0, 1, 2.5] or same.all_edges().prizes.tolist() == [5, 1, 0, 2.5]
+        assert graphdrl.plan(same, 2, cover="edges").edge_prize == 6
+        assert graphdrl.upper_bound(same, 1, cover="edges") == 5
+    text = done(run, "plan", tmp_path / "g.dot", "--cover", "edges", "--budget", "1")
+    assert "prize 5 of 8.5, 58.8 %" in text and "no walk is worth more" in text

@@ -111,12 +111,17 @@ World with_resets(const World& world, const EdgeWalk& walk, double reset_cost) {
 std::vector<std::string> edge_summary(const Answer& answer) {
   const EdgeCover& edges = *answer.edges;
   const auto resets = std::ranges::count(edges.walk.edges, EdgeWalk::kResetEdge);
-  std::string first =
-      fmt::format("walked {} of {} edges, {:.1f} %, for {}{}", edges.walked, edges.edges,
-                  edges.percent(static_cast<double>(edges.walked)), decimal(edges.walk.cost),
-                  answer.until_covered ? "" : fmt::format(" of a budget of {}", decimal(answer.task.budget())));
+  std::string first = fmt::format(
+      "walked {} of {} edges, {:.1f} %, for {}{}", edges.walked, edges.edges,
+      edges.edges == 0 ? 100.0 : 100.0 * static_cast<double>(edges.walked) / static_cast<double>(edges.edges),
+      decimal(edges.walk.cost),
+      answer.until_covered ? "" : fmt::format(" of a budget of {}", decimal(answer.task.budget())));
   if (resets > 0) first += fmt::format(", {} reset{} among it", resets, resets == 1 ? "" : "s");
   std::vector<std::string> lines = {std::move(first)};
+  if (edges.has_prizes) {
+    lines.push_back(fmt::format("prize {} of {}, {:.1f} %", decimal(edges.prize), decimal(edges.total_prize),
+                                edges.percent(edges.prize)));
+  }
   if (!answer.reveal.all()) {
     lines.push_back(
         fmt::format("seen {} of {} nodes, {:.1f} %", answer.discovered.nodes.size(), answer.world.valid_count(),
@@ -124,18 +129,20 @@ std::vector<std::string> edge_summary(const Answer& answer) {
   }
   if (answer.known) {
     const auto price = answer.price_of_ignorance();
-    lines.push_back(fmt::format("a walk that knows the map has {} edges for {}{}", decimal(answer.known->prize),
+    lines.push_back(fmt::format("a walk that knows the map {} {}{} for {}{}", edges.has_prizes ? "is worth" : "has",
+                                decimal(answer.known->prize), edges.has_prizes ? "" : " edges",
                                 decimal(answer.known->cost),
                                 price ? fmt::format(": the price of ignorance is {:.3f}", *price) : ""));
   }
   if (edges.all_cheapest) {
     lines.emplace_back("optimal: no walk over all edges is cheaper");
   } else if (edges.optimal()) {
-    lines.emplace_back("optimal: no walk has more edges");
+    lines.emplace_back(edges.has_prizes ? "optimal: no walk is worth more" : "optimal: no walk has more edges");
   } else {
-    lines.push_back(fmt::format("no walk has more than {} edges, {:.1f} %: the gap is {:.1f} points",
-                                decimal(edges.bound), edges.percent(edges.bound),
-                                edges.percent(edges.bound - static_cast<double>(edges.walked))));
+    lines.push_back(fmt::format("no walk {} than {}{}, {:.1f} %: the gap is {:.1f} points",
+                                edges.has_prizes ? "is worth more" : "has more", decimal(edges.bound),
+                                edges.has_prizes ? "" : " edges", edges.percent(edges.bound),
+                                edges.percent(edges.bound - edges.prize)));
   }
   if (answer.unreachable > 0) {
     lines.push_back(fmt::format("{} node{} cannot be reached from the start", answer.unreachable,
@@ -236,10 +243,9 @@ Answer make_plan(const World& world, const Task& task, const PlanRequest& reques
 
 std::optional<double> Answer::price_of_ignorance() const {
   if (known && edges) {
-    const auto walked = static_cast<double>(edges->walked);
-    if (until_covered && known->prize != walked) return std::nullopt;
+    if (until_covered && known->prize != edges->prize) return std::nullopt;
     return until_covered ? graphdrl::price_of_ignorance(known->cost, plan.cost, /*costs=*/true)
-                         : graphdrl::price_of_ignorance(known->prize, walked, /*costs=*/false);
+                         : graphdrl::price_of_ignorance(known->prize, edges->prize, /*costs=*/false);
   }
   if (!known || (until_covered && known->visited != plan.visited)) return std::nullopt;
   return until_covered ? graphdrl::price_of_ignorance(known->cost, plan.cost, /*costs=*/true)

@@ -59,9 +59,14 @@ class EdgePlanner {
       heap.emplace(cost, state);
     };
     const std::int64_t all = (std::int64_t{1} << edges) - 1;
+    std::vector<double> worth(static_cast<std::size_t>(all) + 1);  // of sets of edges
+    for (std::int64_t set = 1; set <= all; ++set) {
+      const auto last = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(set))) - 1;
+      worth[set] = worth[set ^ (std::int64_t{1} << last)] + graph_.prize(last);
+    }
     reach(std::int64_t{task_.start()} << edges, 0, -1, EdgeWalk::kResetEdge);
     std::int64_t best = -1;
-    std::tuple<int, double> best_rank = {-1, 0};
+    std::tuple<double, double> best_rank = {-1, 0};
     while (!heap.empty()) {
       const auto [cost, state] = heap.top();
       heap.pop();
@@ -69,7 +74,7 @@ class EdgePlanner {
       const NodeId node = static_cast<NodeId>(state >> edges);
       const std::int64_t walked = state & all;
       if (task_.ends_anywhere() || node == task_.end()) {
-        const std::tuple rank{std::popcount(static_cast<std::uint64_t>(walked)), -cost};
+        const std::tuple rank{worth[walked], -cost};
         if (rank > best_rank) std::tie(best, best_rank) = std::tuple(state, rank);
       }
       for (const std::int64_t edge : leaving_[node]) {
@@ -112,6 +117,7 @@ class EdgePlanner {
     }
     NearestFirst search;
     const Graph& open = world_.open();
+    const double most = graph_.prizes.empty() ? 1 : *std::ranges::max_element(graph_.prizes);
     // The cheapest way to a node, over its cheapest edges.
     const auto go_to = [&](NodeId goal) {
       std::vector<NodeId> way;
@@ -129,14 +135,16 @@ class EdgePlanner {
       const auto look_at = [&](NodeId node, double cost) {
         for (const std::int64_t edge : leaving_[node]) {
           const double whole = cost + graph_.edges[edge].cost;
-          if (walked[edge] || walk.cost + whole + cost_to_end(other_end(edge, node)) > limit_) continue;
-          const double seeming = noise == 0 ? cost : whole * (1 + noise * rng.uniform());
+          const double prize = graph_.prize(static_cast<std::size_t>(edge));
+          if (walked[edge] || prize == 0) continue;
+          if (walk.cost + whole + cost_to_end(other_end(edge, node)) > limit_) continue;
+          const double seeming = (noise == 0 ? cost : whole * (1 + noise * rng.uniform())) / prize;
           if (seeming >= least) continue;
           least = seeming;
           next_edge = edge;
           at = node;
         }
-        return cost >= least ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+        return cost >= least * most ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
       };
       if (look_at(here, 0) == NearestFirst::Next::kThrough) search.run(open, here, limit_ - walk.cost, look_at);
       if (next_edge < 0) break;
@@ -179,6 +187,7 @@ class EdgePlanner {
     map.blocked.resize(map.graph.node_count());
     map.prizes.assign(map.graph.node_count(), 1);
     std::fill_n(map.prizes.begin(), nodes, 0);
+    std::ranges::copy(graph_.prizes, map.prizes.begin() + nodes);
     const World halved(world_.name(), std::move(map));
     const End end = task_.ends_anywhere() ? End::anywhere() : End::at(task_.end());
     const Plan plan = plan_nodes(halved, Task(halved, task_.start(), task_.budget(), end));
@@ -199,33 +208,46 @@ class EdgePlanner {
     return {.walk = std::move(walk), .bound = plan.optimal ? plan.prize : plan.bound};
   }
 
-  // As many of the cheapest edges that can be reached as the budget pays for.
+  // Of the edges that can be reached those that are worth most for their cost, as far as the budget pays for them; of
+  // the next one a part where edges have prizes.
   double bound() const {
-    std::vector<double> costs;
+    std::vector<std::pair<double, double>> edges;  // costs and prizes
     std::vector<double> to(world_.node_count(), kNoLimit);
     to[task_.start()] = 0;
     NearestFirst().run(world_.open(), task_.start(), limit_, [&](NodeId node, double cost) {
       to[node] = cost;
       return NearestFirst::Next::kThrough;
     });
-    for (const auto& [a, b, cost] : graph_.edges) {
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
+      const auto& [a, b, cost] = graph_.edges[i];
       double least = to[a] + cost + cost_to_end(b);
       if (!directed_) least = std::min(least, to[b] + cost + cost_to_end(a));
-      if (least <= limit_) costs.push_back(cost);
+      if (least <= limit_ && graph_.prize(i) > 0) edges.emplace_back(cost, graph_.prize(i));
     }
-    std::ranges::sort(costs);
+    const auto cost_for_prize = [](const std::pair<double, double>& edge) { return edge.first / edge.second; };
+    std::ranges::sort(edges, {}, cost_for_prize);
+    double spent = 0;
     double sum = 0;
-    std::size_t count = 0;
-    while (count < costs.size() && sum + costs[count] <= limit_) sum += costs[count++];
-    return static_cast<double>(count);
+    for (const auto& [cost, prize] : edges) {
+      if (spent + cost > limit_) {
+        if (!graph_.prizes.empty()) sum += prize * (limit_ - spent) / cost;
+        break;
+      }
+      spent += cost;
+      sum += prize;
+    }
+    return sum;
   }
 
-  std::int64_t different(const EdgeWalk& walk) const {
+  double prize_of(const EdgeWalk& walk) const {
     std::vector<bool> walked(graph_.edges.size());
+    double prize = 0;
     for (const std::int64_t edge : walk.edges) {
-      if (edge >= 0) walked[edge] = true;
+      if (edge < 0 || walked[edge]) continue;
+      walked[edge] = true;
+      prize += graph_.prize(static_cast<std::size_t>(edge));
     }
-    return std::ranges::count(walked, true);
+    return prize;
   }
 
  private:
@@ -267,12 +289,29 @@ WalkableEdges walkable_edges(const World& world) {
   for (std::size_t i = 0; i < all.edges.size(); ++i) {
     if (world.is_blocked(all.edges[i].a) || world.is_blocked(all.edges[i].b)) continue;
     walkable.graph.edges.push_back(all.edges[i]);
+    if (!all.prizes.empty()) walkable.graph.prizes.push_back(all.prizes[i]);
     walkable.numbers.push_back(static_cast<std::int64_t>(i));
   }
   return walkable;
 }
 
 namespace {
+
+// Fills in what there is, and what is walked.
+void count_edges(const World& world, EdgeCover& cover) {
+  const auto [graph, numbers] = walkable_edges(world);
+  std::vector<std::int64_t> walked = cover.walk.edges;
+  std::erase(walked, EdgeWalk::kResetEdge);
+  std::ranges::sort(walked);
+  walked.erase(std::unique(walked.begin(), walked.end()), walked.end());
+  cover.edges = std::ssize(graph.edges);
+  cover.walked = std::ssize(walked);
+  cover.has_prizes = !graph.prizes.empty();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    cover.total_prize += graph.prize(i);
+    if (std::ranges::binary_search(walked, numbers[i])) cover.prize += graph.prize(i);
+  }
+}
 
 std::optional<EdgeWalk> walk_over_all(const World& world, const Task& task, const Multigraph& graph,
                                       std::optional<double> reset_cost) {
@@ -287,7 +326,7 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
                       const std::function<Plan(const World&, const Task&)>& plan_nodes) {
   const auto [graph, numbers] = walkable_edges(world);
   const bool directed = world.open().directed();
-  EdgeCover cover{.walk = {}, .edges = std::ssize(graph.edges), .reset_cost = reset_cost};
+  EdgeCover cover{.walk = {}, .reset_cost = reset_cost};
   const auto all = walk_over_all(world, task, graph, reset_cost);
   const EdgePlanner planner(world, task, graph, reset_cost);
   cover.bound = planner.bound();
@@ -298,7 +337,7 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
   } else if (auto exact = planner.exact()) {
     cover.walk = *std::move(exact);
     cover.policy = "exact";
-    cover.bound = static_cast<double>(planner.different(cover.walk));
+    cover.bound = planner.prize_of(cover.walk);
   } else {
     Rng rng(kNoiseSeed);
     std::vector<EdgeWalk> walks = {planner.greedy({}, 0, rng)};
@@ -308,26 +347,24 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
       walks.push_back(std::move(walk));
       cover.bound = std::min(cover.bound, bound);
     } else {
-      const std::int64_t tries = std::clamp<std::int64_t>(kNoisyWork / (cover.edges * cover.edges), 4, kMostNoisyTries);
+      const auto edges = std::ssize(graph.edges);
+      const std::int64_t tries = std::clamp<std::int64_t>(kNoisyWork / (edges * edges), 4, kMostNoisyTries);
       for (std::int64_t i = 0; i < tries; ++i) walks.push_back(planner.greedy({}, kNoise, rng));
     }
-    const auto rank = [&](const EdgeWalk& walk) { return std::pair(planner.different(walk), -walk.cost); };
+    const auto rank = [&](const EdgeWalk& walk) { return std::pair(planner.prize_of(walk), -walk.cost); };
     cover.walk = *std::ranges::max_element(walks, {}, rank);
   }
-  cover.walked = planner.different(cover.walk);
   for (std::int64_t& edge : cover.walk.edges) {
     if (edge >= 0) edge = numbers[edge];
   }
+  count_edges(world, cover);
   return cover;
 }
 
 EdgeCover judge_edges(const World& world, const Task& task, std::optional<double> reset_cost, EdgeWalk walk) {
   const auto [graph, numbers] = walkable_edges(world);
-  EdgeCover cover{.walk = std::move(walk), .edges = std::ssize(graph.edges), .reset_cost = reset_cost};
-  std::vector<std::int64_t> walked = cover.walk.edges;
-  std::erase(walked, EdgeWalk::kResetEdge);
-  std::ranges::sort(walked);
-  cover.walked = std::unique(walked.begin(), walked.end()) - walked.begin();
+  EdgeCover cover{.walk = std::move(walk), .reset_cost = reset_cost};
+  count_edges(world, cover);
   cover.bound = EdgePlanner(world, task, graph, reset_cost).bound();
   if (cover.walked < cover.edges) return cover;
   const auto all = walk_over_all(world, task, graph, reset_cost);

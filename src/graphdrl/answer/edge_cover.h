@@ -28,17 +28,21 @@ struct EdgeCover {
   EdgeWalk walk;                          // with the numbers of WalkableEdges::numbers
   std::int64_t walked = 0;                // different edges
   std::int64_t edges = 0;                 // that there are
-  double bound = 0;                       // no walk within the budget has more
+  double prize = 0;                       // of those walked: their number, unless edges have prizes
+  double total_prize = 0;                 // of all
+  bool has_prizes = false;                // some edge is worth other than 1
+  double bound = 0;                       // no walk within the budget has a higher prize
   bool all_cheapest = false;              // it walks all, and none that does is cheaper
   std::string policy = {};                // what made it, where that was none of plan_nodes
   std::optional<double> reset_cost = {};  // of jumps to the start that walks may make
-  // Whether no walk has more edges, or if it has all, none is known to be cheaper.
-  bool optimal() const { return all_cheapest || static_cast<double>(walked) >= bound; }
-  double percent(double count) const { return edges == 0 ? 100.0 : 100.0 * count / static_cast<double>(edges); }
+
+  // Whether no walk has a higher prize, or if it walks all, none is known to be cheaper.
+  bool optimal() const { return all_cheapest || prize >= bound; }
+  double percent(double part) const { return total_prize == 0 ? 100.0 : 100.0 * part / total_prize; }  // of a prize
 };
 
-// A walk over as many edges as the task's budget pays for; among those over all edges the cheapest [postman_walk()].
-// Each edge is worth 1, whatever the nodes' prizes are.
+// A walk over edges that are worth as much as can be within the task's budget; among those over all edges the cheapest
+// [postman_walk()]. An edge is worth its own prize, else 1, whatever the nodes' prizes are.
 //
 // Where not all can be walked: graphs of up to kExactEdges edges are searched by states. A directed graph is planned as
 // nodes are, on a graph with a node in the middle of each edge. An undirected one by the beginning of the cheapest walk

@@ -68,6 +68,7 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
   const auto n = static_cast<std::size_t>(arrays.node_count);
   require_length(arrays.costs.size(), arrays.edges.size() / 2, "costs");
   require_length(arrays.labels.size(), arrays.edges.size() / 2, "labels of edges");
+  require_length(arrays.prizes.size(), arrays.edges.size() / 2, "prizes of edges");
   require_length(map.blocked.size(), n, "blocked");
   require_length(map.labels.size(), n, "labels");
   require_length(map.prizes.size(), n, "prizes");
@@ -84,8 +85,9 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
     }
     edges.push_back({static_cast<NodeId>(a), static_cast<NodeId>(b), arrays.costs.empty() ? 1.0 : arrays.costs[i]});
   }
-  for (const double prize : map.prizes) {
-    if (!std::isfinite(prize) || prize < 0) {
+  for (const std::span<const double> prizes : {std::span<const double>(map.prizes), arrays.prizes}) {
+    for (const double prize : prizes) {
+      if (std::isfinite(prize) && prize >= 0) continue;
       throw Error({.what = "bad prize", .expected = "a number from 0 up", .got = fmt::format("{}", prize)});
     }
   }
@@ -94,7 +96,10 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
     throw Error({.what = fmt::format("bad coordinates of node {}", i), .expected = "finite numbers"});
   }
   if (map.blocked.empty()) map.blocked.resize(n);
-  set_edges(map, static_cast<NodeId>(arrays.node_count), {.edges = std::move(edges), .labels = arrays.labels},
+  const bool worth_the_same = std::ranges::all_of(arrays.prizes, [](double prize) { return prize == 1; });
+  Multigraph all{.edges = std::move(edges), .labels = arrays.labels};
+  if (!worth_the_same) all.prizes.assign(arrays.prizes.begin(), arrays.prizes.end());
+  set_edges(map, static_cast<NodeId>(arrays.node_count), std::move(all),
             arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
   return World(std::move(name), std::move(map));
 }

@@ -25,6 +25,7 @@ struct EdgeArrays {
   std::span<const double> costs = {};        // [E]; empty where each is 1
   bool directed = false;
   std::vector<std::string> labels = {};  // [E]; empty where no edge has one
+  std::span<const double> prizes = {};   // [E]; empty where each is 1
 };
 
 // The world of these edges; `map` has all but the graph, and what is empty in it is not there. Throws Error on lengths

@@ -26,6 +26,7 @@ struct GivenTask {
 struct Multigraph {
   std::vector<Edge> edges;               // from a to b; in an undirected graph either way
   std::vector<std::string> labels = {};  // [edges]; empty where no edge has one
+  std::vector<double> prizes = {};       // [edges], what walking one for the first time is worth; empty where that is 1
 
   std::int64_t loops() const {
     return std::ranges::count_if(edges, [](const Edge& edge) { return edge.a == edge.b; });
@@ -33,6 +34,7 @@ struct Multigraph {
   bool weighted() const {
     return std::ranges::any_of(edges, [](const Edge& edge) { return edge.cost != 1; });
   }
+  double prize(std::size_t edge) const { return prizes.empty() ? 1 : prizes[edge]; }
   // What an edge is called; empty where it has no label.
   std::string label(std::size_t edge) const { return labels.empty() ? "" : labels[edge]; }
   // Edges beside another one between the same nodes. graph: the simple graph of these edges.
@@ -55,10 +57,10 @@ inline Multigraph all_edges(const GraphMap& map) {
   return map.multigraph ? *map.multigraph : Multigraph{.edges = map.graph.edges()};
 }
 
-// Gives a map edges, and their list where its graph has not all of them, or they have labels.
+// Gives a map edges, and their list where its graph has not all of them, or they have labels or prizes.
 inline void set_edges(GraphMap& map, NodeId node_count, Multigraph all, EdgeKind kind) {
   map.graph = Graph::from_edges(node_count, all.edges, kind);
-  const bool whole = std::ssize(all.edges) == map.graph.edge_count() && all.labels.empty();
+  const bool whole = std::ssize(all.edges) == map.graph.edge_count() && all.labels.empty() && all.prizes.empty();
   map.multigraph = whole ? nullptr : std::make_shared<const Multigraph>(std::move(all));
 }
 

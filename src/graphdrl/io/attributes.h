@@ -1,6 +1,7 @@
 // What attributes of nodes and edges mean, by the names that programs give them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@ namespace graphdrl {
 // The one list of what attributes mean. The first name is the best; case does not count.
 inline constexpr std::array<std::string_view, 4> kCostNames = {"weight", "cost", "length", "distance"};
 inline constexpr std::array<std::string_view, 2> kPrizeNames = {"prize", "score"};
+inline constexpr std::array<std::string_view, 1> kEdgePrizeNames = {"prize"};
 inline constexpr std::array<std::string_view, 2> kLabelNames = {"label", "name"};
 struct PlaceNames {
   std::string_view x;
@@ -45,6 +47,7 @@ class AmountNames {
   bool knows(std::string_view name) const { return is_name_of(name, names_); }
   // The one that counts, the last of those with the best name; null where there is none.
   const Attribute* best(std::span<const Attribute> attributes);
+  bool used() const { return std::ranges::find(used_, true) != used_.end(); }
   // Throws Error where the one asked for was never met. owner: "edge" or "node".
   void check(const std::string& owner, const std::string& place) const;
   // "weight and length" where more than one of them was used; else empty.

@@ -428,6 +428,7 @@ std::string format_dot(const GraphMap& map, const NodeColumn& column) {
     std::string attributes;
     if (const std::string label = all.label(i); !label.empty()) attributes = "label=" + dot_quoted(label);
     if (weighted) attributes += fmt::format("{}weight=\"{}\"", attributes.empty() ? "" : ", ", edge.cost);
+    if (all.prize(i) != 1) attributes += fmt::format("{}prize=\"{}\"", attributes.empty() ? "" : ", ", all.prize(i));
     text += fmt::format("  {} {} {}{};\n", edge.a, directed ? "->" : "--", edge.b,
                         attributes.empty() ? "" : fmt::format(" [{}]", attributes));
   }

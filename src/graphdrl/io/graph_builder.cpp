@@ -52,6 +52,7 @@ std::vector<std::string> labels_from_one(NodeId count) {
 GraphBuilder::GraphBuilder(const MapOptions& options, std::function<std::string()> place, std::ptrdiff_t text_bytes)
     : costs_(options.cost_attribute, kCostNames),
       prizes_(options.prize_attribute, kPrizeNames),
+      edge_prizes_(options.prize_attribute, kEdgePrizeNames),
       note_(options.note),
       place_(std::move(place)),
       items_left_(text_bytes < 0 ? std::numeric_limits<std::int64_t>::max() : kMostItemsPerByte * text_bytes) {}
@@ -91,9 +92,11 @@ void GraphBuilder::add_edge(NodeId from, NodeId to, bool one_way) {
   last_->edges.push_back({from, to, 1});
 }
 
-void GraphBuilder::EdgeList::add(const Edge& edge, std::string label) {
+void GraphBuilder::EdgeList::add(const Edge& edge, const EdgeList& other, std::size_t place) {
+  const auto here = static_cast<NodeId>(edges.size());
   edges.push_back(edge);
-  if (!label.empty()) at(labels, static_cast<NodeId>(edges.size() - 1), std::string()) = std::move(label);
+  if (place < other.labels.size()) at(labels, here, std::string()) = other.labels[place];
+  if (place < other.prizes.size()) at(prizes, here, 1.0) = other.prizes[place];
 }
 
 double GraphBuilder::number(const Attribute& attribute, bool may_be_negative) const {
@@ -142,6 +145,10 @@ void GraphBuilder::set_edge(std::span<const Attribute> attributes) {
   spend(std::max<std::int64_t>(0, std::ssize(attributes) - kFreeAttributes));
   const Attribute* const cost = costs_.best(attributes);
   if (cost != nullptr) last_->edges.back().cost = number(*cost, /*may_be_negative=*/false);
+  if (const Attribute* const prize = edge_prizes_.best(attributes)) {
+    const auto last = static_cast<NodeId>(last_->edges.size() - 1);
+    at(last_->prizes, last, 1.0) = number(*prize, /*may_be_negative=*/false);
+  }
   for (const Attribute& attribute : attributes) {
     if (!same_name(attribute.name, kEdgeLabelName) || attribute.value.empty()) continue;
     at(last_->labels, static_cast<NodeId>(last_->edges.size() - 1), std::string()) = attribute.value;
@@ -172,7 +179,7 @@ void GraphBuilder::drop_left_out() {
     for (std::size_t i = 0; i < all.edges.size(); ++i) {
       const Edge& edge = all.edges[i];
       if (left_out_[edge.a] || left_out_[edge.b]) continue;
-      list->add({number[edge.a], number[edge.b], edge.cost}, all.label(i));
+      list->add({number[edge.a], number[edge.b], edge.cost}, all, i);
     }
   }
   if (start_ != kNoNode) start_ = number[start_];
@@ -217,15 +224,15 @@ GraphBuilder::EdgeList GraphBuilder::take_edges() {
   if (!directed_) return std::move(both_ways_);
   for (std::size_t i = 0; i < both_ways_.edges.size(); ++i) {
     const Edge& edge = both_ways_.edges[i];
-    one_way_.add(edge, both_ways_.label(i));
-    if (edge.a != edge.b) one_way_.add({edge.b, edge.a, edge.cost}, both_ways_.label(i));
+    one_way_.add(edge, both_ways_, i);
+    if (edge.a != edge.b) one_way_.add({edge.b, edge.a, edge.cost}, both_ways_, i);
   }
   return std::move(one_way_);
 }
 
 GraphMap GraphBuilder::build() {
   costs_.check("edge", place_());
-  prizes_.check("node", place_());
+  if (!edge_prizes_.used()) prizes_.check("node", place_());
   drop_left_out();
   const NodeId count = ids_.count();
   blocked_.resize(count);
@@ -239,7 +246,10 @@ GraphMap GraphBuilder::build() {
   EdgeList all = take_edges();
   GraphMap map;
   if (!all.labels.empty()) all.labels.resize(all.edges.size());
-  set_edges(map, count, {.edges = std::move(all.edges), .labels = std::move(all.labels)},
+  const bool worth_the_same = std::ranges::all_of(all.prizes, [](double prize) { return prize == 1; });
+  if (worth_the_same) all.prizes.clear();
+  if (!all.prizes.empty()) all.prizes.resize(all.edges.size(), 1.0);
+  set_edges(map, count, {std::move(all.edges), std::move(all.labels), std::move(all.prizes)},
             directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
   map.blocked = std::move(blocked_);
   if (std::any_of(prize_.begin(), prize_.end(), [](double prize) { return prize != 1; })) {

@@ -61,7 +61,7 @@ class GraphBuilder {
   void set_edge(std::span<const Attribute> attributes);
   void set_edge(std::string_view name, std::string_view value);
   bool uses_of_node(std::string_view name) const;
-  bool uses_of_edge(std::string_view name) const { return costs_.knows(name); }
+  bool uses_of_edge(std::string_view name) const { return costs_.knows(name) || edge_prizes_.knows(name); }
 
   void set_unit(std::string_view unit) { unit_ = unit; }  // of the coordinates
   void set_start(NodeId node) { start_ = node; }          // where the walk asked for begins
@@ -78,9 +78,10 @@ class GraphBuilder {
   struct EdgeList {
     std::vector<Edge> edges;
     std::vector<std::string> labels;  // as many as the last edge that has one
+    std::vector<double> prizes;       // likewise
 
-    std::string label(std::size_t edge) const { return edge < labels.size() ? labels[edge] : std::string(); }
-    void add(const Edge& edge, std::string label);
+    // Adds an edge of another list, with its label and prize.
+    void add(const Edge& edge, const EdgeList& other, std::size_t place);
   };
 
   double number(const Attribute& attribute, bool may_be_negative) const;
@@ -91,6 +92,7 @@ class GraphBuilder {
 
   AmountNames costs_;
   AmountNames prizes_;
+  AmountNames edge_prizes_;
   std::function<void(const std::string&)> note_;
   std::function<std::string()> place_;
   std::int64_t items_left_;

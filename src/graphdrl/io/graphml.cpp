@@ -125,11 +125,12 @@ class GraphMlReader {
   GraphBuilder builder_;
 };
 
-void append_key(pugi::xml_node root, const char* name, const char* kind, const char* type) {
+// name: null where it is the id.
+void append_key(pugi::xml_node root, const char* id, const char* kind, const char* type, const char* name = nullptr) {
   pugi::xml_node key = root.append_child("key");
-  key.append_attribute("id") = name;
+  key.append_attribute("id") = id;
   key.append_attribute("for") = kind;
-  key.append_attribute("attr.name") = name;
+  key.append_attribute("attr.name") = name != nullptr ? name : id;
   key.append_attribute("attr.type") = type;
 }
 
@@ -170,6 +171,7 @@ std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
   const bool weighted = all.weighted();
   if (weighted) append_key(root, "weight", "edge", "double");
   if (!all.labels.empty()) append_key(root, "label", "edge", "string");
+  if (!all.prizes.empty()) append_key(root, "edge_prize", "edge", "double", "prize");
   pugi::xml_node graph = root.append_child("graph");
   graph.append_attribute("edgedefault") = map.graph.directed() ? "directed" : "undirected";
   if (!map.places.unit.empty()) append_data(graph, "unit", map.places.unit);
@@ -194,6 +196,7 @@ std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
     item.append_attribute("target") = id_of(edge.b).c_str();
     if (weighted) append_data(item, "weight", fmt::format("{}", edge.cost));
     if (const std::string label = all.label(i); !label.empty()) append_data(item, "label", xml_text(label));
+    if (all.prize(i) != 1) append_data(item, "edge_prize", fmt::format("{}", all.prize(i)));
   }
   std::ostringstream stream;
   document.save(stream, "  ");

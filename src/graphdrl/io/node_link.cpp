@@ -230,6 +230,7 @@ std::string format_node_link(const GraphMap& map) {
     text += R"(,"target":)";
     append_id(all.edges[i].b);
     if (weighted) text += R"(,"weight":)" + json(all.edges[i].cost).dump();
+    if (all.prize(i) != 1) text += R"(,"prize":)" + json(all.prize(i)).dump();
     if (const std::string label = all.label(i); !label.empty()) {
       text += R"(,"label":)" + json(valid_utf8(label)).dump();
     }

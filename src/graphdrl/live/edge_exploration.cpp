@@ -149,7 +149,7 @@ Answer explore_edges(const World& world, const Task& task, const PlanRequest& re
         cover_edges(world, task, request.reset_cost, [&](const World& halved, const Task& halved_task) {
           return make_plan(halved, halved_task, {.seed = request.seed}, thinks).plan;
         });
-    answer.known = Plan{.walk = known.walk.nodes, .prize = static_cast<double>(known.walked), .cost = known.walk.cost};
+    answer.known = Plan{.walk = known.walk.nodes, .prize = known.prize, .cost = known.walk.cost};
   }
   answer.elapsed_s = watch.seconds();
   return answer;
@@ -171,8 +171,7 @@ void compare_edges(ComparisonOptions& options, std::optional<double> reset_cost)
     }
   }
   const auto walked = [](const Answer& answer) {
-    return ComparisonOptions::Walked{answer.edges->percent(static_cast<double>(answer.edges->walked)),
-                                     answer.plan.cost};
+    return ComparisonOptions::Walked{answer.edges->percent(answer.edges->prize), answer.plan.cost};
   };
   PlanRequest request{.reveal = options.reveal,
                       .score = options.score,

@@ -113,7 +113,7 @@ void LiveCells::told(const LiveStep& step) {
 
 void LiveCells::add_to(LiveReport& report) const {
   report.steps = steps_;
-  LiveReport::Cells& cells = report.cells.emplace();
+  LiveCellReport& cells = report.cells.emplace();
   cells.at = at_;
   cells.seen = graph_.free_count();
   cells.visited = graph_.visited_count();

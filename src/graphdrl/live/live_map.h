@@ -82,6 +82,20 @@ struct Surprise {
 
 inline constexpr std::size_t kMostSurprisesKept = 1000;
 
+// What came of cells.
+struct LiveCellReport {
+  Point at = {};
+  int seen = 0;              // free ones
+  int visited = 0;           // entered
+  int left = 0;              // to be entered still, in reach or not
+  std::int64_t changed = 0;  // how often one was free and is not any more, or the other way round
+  struct Failed {
+    Point goal;
+    int failures;
+  };
+  std::vector<Failed> failed = {};  // goals, that have failed and were not reached since
+};
+
 struct LiveReport {
   std::int64_t steps = 0;  // done or failed
   double cost = 0;
@@ -101,20 +115,7 @@ struct LiveReport {
   std::int64_t surprise_count = 0;
   std::vector<std::string> unreachable = {};  // states heard of and not visited
 
-  // Instead of states:
-  struct Cells {
-    Point at = {};
-    int seen = 0;              // free ones
-    int visited = 0;           // entered
-    int left = 0;              // to be entered still, in reach or not
-    std::int64_t changed = 0;  // how often one was free and is not any more, or the other way round
-    struct Failed {
-      Point goal;
-      int failures;
-    };
-    std::vector<Failed> failed = {};  // goals, that have failed and were not reached since
-  };
-  std::optional<Cells> cells = {};
+  std::optional<LiveCellReport> cells = {};  // instead of states
 };
 
 // Throws FieldError unless an amount is from 0 to 1e15: sums of so large ones are still exact to a tenth.

@@ -253,7 +253,7 @@ ordered_json point_json(const Point& point) {
 }
 
 ordered_json cells_report_json(const LiveReport& report) {
-  const LiveReport::Cells& cells = *report.cells;
+  const LiveCellReport& cells = *report.cells;
   ordered_json failed = ordered_json::array();
   for (const auto& [goal, failures] : cells.failed) {
     failed.push_back({{"goto", point_json(goal)}, {"failures", failures}});

@@ -224,8 +224,13 @@ void add_edges(const Answer& answer, nlohmann::ordered_json& json) {
   json["edges_walked"] = edges.walked;
   json["edges"] = edges.edges;
   json["upper_bound"] = edges.percent(edges.bound);
-  json["max_edges"] = static_cast<std::int64_t>(edges.bound);
-  json["gap"] = edges.percent(edges.bound - static_cast<double>(edges.walked));
+  if (edges.has_prizes) {
+    json["edge_prize"] = edges.prize;
+    json["max_edge_prize"] = edges.bound;
+  } else {
+    json["max_edges"] = static_cast<std::int64_t>(edges.bound);
+  }
+  json["gap"] = edges.percent(edges.bound - edges.prize);
   json["optimal"] = edges.optimal();
 }
 
@@ -283,7 +288,10 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
   }
   if (answer.known) {
     json["known"] = {{"visited", answer.known->visited}, {"prize", answer.known->prize}, {"cost", answer.known->cost}};
-    if (answer.edges) json["known"] = {{"edges_walked", answer.known->prize}, {"cost", answer.known->cost}};
+    if (answer.edges) {
+      const char* const worth = answer.edges->has_prizes ? "edge_prize" : "edges_walked";
+      json["known"] = {{worth, answer.known->prize}, {"cost", answer.known->cost}};
+    }
     const auto price = answer.price_of_ignorance();
     json["price_of_ignorance"] = price ? Json(*price) : Json();
   }

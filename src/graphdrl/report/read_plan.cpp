@@ -192,7 +192,8 @@ void read_claims(const World& world, const nlohmann::json& document, Answer& ans
     answer.policy = *policy;
   }
   if (answer.edges) {
-    if (const auto bound = number_at(document, "max_edges")) answer.edges->bound = *bound;
+    const char* const bound = answer.edges->has_prizes ? "max_edge_prize" : "max_edges";
+    answer.edges->bound = number_at(document, bound).value_or(answer.edges->bound);
     return;
   }
   if (const auto bound = number_at(document, "upper_bound")) answer.plan.bound = *bound / 100 * world.total_prize();
