@@ -39,14 +39,16 @@ World graph(std::string name, std::int64_t node_count, const InArray<std::int64_
             const InArray<double, nb::ndim<1>>& costs, bool directed, const InArray<bool, nb::ndim<1>>& blocked,
             std::vector<std::string> labels, const InArray<double, nb::ndim<1>>& prizes,
             const InArray<double, nb::shape<-1, 2>>& places, const std::string& unit, const GivenState& given,
-            std::vector<std::string> edge_labels, const InArray<double, nb::ndim<1>>& edge_prizes) {
+            std::vector<std::string> edge_labels, const InArray<double, nb::ndim<1>>& edge_prizes,
+            std::vector<bool> both_ways) {
   const auto& [budget, start, end] = given;
   const EdgeArrays arrays{.node_count = node_count,
                           .edges = {edges.data(), edges.size()},
                           .costs = {costs.data(), costs.size()},
                           .directed = directed,
                           .labels = std::move(edge_labels),
-                          .prizes = {edge_prizes.data(), edge_prizes.size()}};
+                          .prizes = {edge_prizes.data(), edge_prizes.size()},
+                          .both_ways = std::move(both_ways)};
   GraphMap map{.graph = {},
                .blocked = std::vector<bool>(blocked.data(), blocked.data() + blocked.size()),
                .labels = std::move(labels),
@@ -137,7 +139,8 @@ void bind_worlds(nb::module_& module) {
                   nb::arg("frame").none())
       .def_static("graph", &graph, nb::arg("name"), nb::arg("node_count"), nb::arg("edges"), nb::arg("costs"),
                   nb::arg("directed"), nb::arg("blocked"), nb::arg("labels"), nb::arg("prizes"), nb::arg("places"),
-                  nb::arg("unit"), nb::arg("given"), nb::arg("edge_labels"), nb::arg("edge_prizes"))
+                  nb::arg("unit"), nb::arg("given"), nb::arg("edge_labels"), nb::arg("edge_prizes"),
+                  nb::arg("both_ways"))
       .def_static("from_file", &from_file, nb::arg("path"), nb::arg("cost_attribute"), nb::arg("prize_attribute"),
                   nb::arg("cell_pixels"), nb::arg("unknown_is_free"), nb::arg("robot_radius"),
                   nb::arg("cell_size").none(), nb::arg("connectivity"), nb::arg("cut_corners"), nb::arg("note"))
@@ -174,6 +177,7 @@ void bind_worlds(nb::module_& module) {
           "edges", [](const World& world) { return arrays_of(world.graph().edges()); }, nb::rv_policy::automatic)
       .def_prop_ro(
           "all_edges", [](const World& world) { return arrays_of(all_edges(world).edges); }, nb::rv_policy::automatic)
+      .def_prop_ro("both_ways", [](const World& world) { return all_edges(world).both_ways; })
       .def_prop_ro("edge_labels", [](const World& world) { return all_edges(world).labels; })
       .def_prop_ro(
           "edge_prizes", [](const World& world) { return to_numpy(all_edges(world).prizes); }, nb::rv_policy::automatic)

@@ -85,6 +85,8 @@ class Edges(NamedTuple):
     """What they are called; empty where no edge has a label."""
     prizes: NDArray[np.float64]
     """What walking one for the first time is worth, shape [E]; empty where that is 1."""
+    both_ways: list[bool]
+    """Of a directed world, which ones lead back, too, and count as one all the same; empty where none does."""
 
 
 class World:
@@ -229,6 +231,7 @@ class World:
             (None, _NO_NODE, _NO_NODE),
             [],
             flat_of(edge_prizes, np.float64, "edge_prizes", "fiu", len(ends)),
+            [],
         )
         return cls(core, labels)
 
@@ -466,7 +469,8 @@ class World:
     def all_edges(self) -> Edges:
         """All edges, loops and parallel ones too, by the numbers that `Plan.walk_edges` has."""
         ends, costs = self._core.all_edges
-        return Edges(ends.reshape(-1, 2), costs, self._core.edge_labels, self._core.edge_prizes)
+        core = self._core
+        return Edges(ends.reshape(-1, 2), costs, core.edge_labels, core.edge_prizes, core.both_ways)
 
     def names(self, numbers: Iterable[int]) -> list[Node]:
         """What nodes are called, by their numbers: labels, `(row, column)` on a grid, else the numbers.
@@ -570,11 +574,11 @@ class World:
         if grid is not None:
             _, _, diagonals, cut_corners, frame = grid
             return _restore_grid, (core.name, np.array(self.blocked), diagonals, cut_corners, frame)
-        ends, costs, edge_labels, edge_prizes = self.all_edges()
+        ends, costs, edge_labels, edge_prizes, both_ways = self.all_edges()
         state = (
             core.name, core.node_count, ends, costs, core.directed, self.blocked, core.labels, core.prizes,
             core.places.reshape(-1, 2), core.unit, core.given, edge_labels,
-            edge_prizes,
+            edge_prizes, both_ways,
         )  # fmt: skip
         return _restore_graph, (state, self._labels)
 

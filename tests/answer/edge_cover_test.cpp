@@ -56,7 +56,8 @@ double best_prize(const Multigraph& all, bool directed, NodeId nodes, const Edge
     const double cost = least[node][walked];
     for (std::size_t i = 0; i < edges.size(); ++i) {
       if (edges[i].a == node) reach(edges[i].b, walked | 1U << i, cost + edges[i].cost);
-      if (edges[i].b == node && !directed) reach(edges[i].a, walked | 1U << i, cost + edges[i].cost);
+      if (edges[i].b == node && (!directed || all.leads_back(i)))
+        reach(edges[i].a, walked | 1U << i, cost + edges[i].cost);
     }
     if (asked.reset_cost) reach(asked.start, walked, cost + *asked.reset_cost);
   }
@@ -92,7 +93,8 @@ double planned_prize(const Multigraph& all, bool directed, NodeId nodes, const E
       continue;
     }
     const Edge& one = edges[static_cast<std::size_t>(edge)];
-    EXPECT_TRUE((one.a == from && one.b == to) || (!directed && one.b == from && one.a == to));
+    const bool back = !directed || all.leads_back(static_cast<std::size_t>(edge));
+    EXPECT_TRUE((one.a == from && one.b == to) || (back && one.b == from && one.a == to));
     walked.insert(edge);
     cost += one.cost;
   }
@@ -119,6 +121,8 @@ Case random_case(Rng& rng, int edges, bool directed) {
   for (int i = 0; i < edges; ++i) {
     made.all.edges.push_back({rng.index(made.nodes), rng.index(made.nodes), 1.0 + rng.index(3)});
   }
+  const bool mixed = directed && rng.index(2) == 0;
+  for (int i = 0; mixed && i < edges; ++i) made.all.both_ways.push_back(rng.index(2) == 0);
   const bool prizes = rng.index(2) == 0;
   for (int i = 0; prizes && i < edges; ++i) made.all.prizes.push_back(rng.index(5));
   made.asked = {.budget = static_cast<double>(rng.index(2 * edges)), .start = rng.index(made.nodes), .end = kNoNode};

@@ -93,7 +93,7 @@ void read_messages(const std::string& text) {
   }
   if (const LiveExploration* const exploration = session.exploration()) {
     live_report_json(exploration->report()).dump();
-    World("map", exploration->map());
+    std::visit([](auto map) { World("map", std::move(map)); }, exploration->map());
     plan_json(exploration->answer("map"));
   }
 }

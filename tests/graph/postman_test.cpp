@@ -37,7 +37,7 @@ double least_cost(const Multigraph& graph, bool directed, NodeId nodes, NodeId s
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
       const Edge& edge = graph.edges[i];
       if (edge.a == node) reach(edge.b, walked | 1U << i, cost + edge.cost);
-      if (edge.b == node && !directed) reach(edge.a, walked | 1U << i, cost + edge.cost);
+      if (edge.b == node && (!directed || graph.leads_back(i))) reach(edge.a, walked | 1U << i, cost + edge.cost);
     }
     if (options.reset_cost) reach(start, walked, cost + *options.reset_cost);
   }
@@ -61,7 +61,8 @@ double checked_cost(const EdgeWalk& walk, const Multigraph& graph, bool directed
       continue;
     }
     const Edge& edge = graph.edges[walk.edges[i]];
-    EXPECT_TRUE((edge.a == from && edge.b == to) || (!directed && edge.b == from && edge.a == to));
+    const bool back = !directed || graph.leads_back(static_cast<std::size_t>(walk.edges[i]));
+    EXPECT_TRUE((edge.a == from && edge.b == to) || (back && edge.b == from && edge.a == to));
     walked.insert(walk.edges[i]);
     cost += edge.cost;
   }
@@ -91,19 +92,56 @@ TEST(Postman, WalksAsShortAsAnyWalkOverAllEdges) {
     ASSERT_EQ(walk.has_value(), least < kNoLimit) << round;
     if (!walk) continue;
     ++found;
-    EXPECT_NEAR(checked_cost(*walk, graph, directed, start, options), least, 1e-6) << round;
-    EXPECT_NEAR(walk->cost, least, 1e-6);
+    EXPECT_NEAR(checked_cost(walk->walk, graph, directed, start, options), least, 1e-6) << round;
+    EXPECT_NEAR(walk->walk.cost, least, 1e-6);
+    EXPECT_NEAR(walk->bound, least, 1e-6);
   }
   EXPECT_GT(found, 200);
 }
 
+TEST(Postman, WalksMixedGraphsNearlyAsShortAsCanBe) {
+  Rng rng(12);
+  int found = 0;
+  int best = 0;
+  double walked = 0;
+  double needed = 0;
+  for (int round = 0; round < 400; ++round) {
+    const NodeId nodes = 3 + rng.index(3);
+    Multigraph graph;
+    const int edges = 3 + rng.index(7);
+    for (int i = 0; i < edges; ++i) {
+      graph.edges.push_back({rng.index(nodes), rng.index(nodes), 1.0 + rng.index(4)});
+      graph.both_ways.push_back(rng.index(2) == 0);
+    }
+    PostmanOptions options;
+    if (rng.index(3) > 0) options.end = rng.index(nodes);
+    if (rng.index(3) == 0) options.reset_cost = rng.index(4);
+    const NodeId start = rng.index(nodes);
+    const double least = least_cost(graph, /*directed=*/true, nodes, start, options);
+    const auto walk = postman_walk(graph, EdgeKind::kDirected, nodes, start, options);
+    ASSERT_EQ(walk.has_value(), least < kNoLimit) << round;
+    if (!walk) continue;
+    ++found;
+    const double cost = checked_cost(walk->walk, graph, /*directed=*/true, start, options);
+    EXPECT_EQ(cost, walk->walk.cost);
+    EXPECT_GE(cost, least) << round;
+    EXPECT_LE(walk->bound, least) << round;
+    best += cost == least;
+    walked += cost;
+    needed += least;
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_GT(best, found * 9 / 10);
+  EXPECT_LT(walked, needed * 1.01);
+}
+
 TEST(Postman, WalksAPathThereAndBack) {
   const Multigraph path{.edges = {{0, 1}, {1, 2}}};
-  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {.end = 0})->nodes, ElementsAre(0, 1, 2, 1, 0));
-  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {})->nodes, ElementsAre(0, 1, 2));
-  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 1, {})->nodes.size(), 4);
+  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {.end = 0})->walk.nodes, ElementsAre(0, 1, 2, 1, 0));
+  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {})->walk.nodes, ElementsAre(0, 1, 2));
+  EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 1, {})->walk.nodes.size(), 4);
   EXPECT_FALSE(postman_walk(path, EdgeKind::kDirected, 3, 1, {}));
-  EXPECT_EQ(postman_walk(path, EdgeKind::kDirected, 3, 0, {.end = 0, .reset_cost = 5})->cost, 7);
+  EXPECT_EQ(postman_walk(path, EdgeKind::kDirected, 3, 0, {.end = 0, .reset_cost = 5})->walk.cost, 7);
   EXPECT_THAT(error_of([&] { postman_walk(path, EdgeKind::kUndirected, 3, 0, {.reset_cost = 1}); }),
               HasSubstr("one way"));
 }

@@ -234,6 +234,27 @@ def test_loops_and_parallel_edges_of_networkx_are_covered():
     assert again.ends.tolist() == edges.ends.tolist() and again.costs.tolist() == [1] * 4
 
 
+MIXED = """<graphml xmlns="http://graphml.graphdrawing.org/xmlns"><graph edgedefault="directed">
+<node id="a"/><node id="b"/><node id="c"/>
+<edge source="a" target="b"/>
+<edge source="b" target="c" directed="false"/><edge source="a" target="c" directed="false"/>
+</graph></graphml>"""
+
+
+def test_edges_that_lead_both_ways_count_once_beside_others(tmp_path, run):
+    (tmp_path / "mixed.graphml").write_text(MIXED)
+    done(run, "maps", "convert", tmp_path / "mixed.graphml", "--out", tmp_path / "again.graphml")
+    world = graphdrl.World.from_file(tmp_path / "again.graphml")
+    for same in (world, pickle.loads(pickle.dumps(world))):
+        assert same.all_edges().both_ways == [False, True, True]
+        for explored in (graphdrl.plan(same, cover="edges", end="start"), graphdrl.explore(same, cover="edges")):
+            assert (explored.edges_walked, explored.edge_count, explored.cost) == (3, 3, 3)
+    for command in ("plan", "explore"):
+        done(run, command, tmp_path / "mixed.graphml", "--cover", "edges", "--out", tmp_path / "walk.json")
+        text = done(run, "check", tmp_path / "mixed.graphml", tmp_path / "walk.json")
+        assert "walked 3 of 3 edges" in text and "optimal" in text
+
+
 def test_edges_have_prizes_of_their_own(tmp_path, run):
     graph = nx.DiGraph()
     graph.add_edge("a", "b", prize=5)

@@ -136,6 +136,8 @@ std::vector<std::string> edge_summary(const Answer& answer) {
   }
   if (edges.all_cheapest) {
     lines.emplace_back("optimal: no walk over all edges is cheaper");
+  } else if (edges.least_cost > 0) {
+    lines.push_back(fmt::format("no walk over all edges costs less than {}", decimal(edges.least_cost)));
   } else if (edges.optimal()) {
     lines.emplace_back(edges.has_prizes ? "optimal: no walk is worth more" : "optimal: no walk has more edges");
   } else {

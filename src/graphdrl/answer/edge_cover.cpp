@@ -30,12 +30,13 @@ class EdgePlanner {
         graph_(graph),
         reset_cost_(reset_cost),
         directed_(world.open().directed()),
+        mixed_(!graph.both_ways.empty()),
         limit_(task.limit()),
         leaving_(world.node_count()) {
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
       const Edge& edge = graph.edges[i];
       leaving_[edge.a].push_back(static_cast<std::int64_t>(i));
-      if (!directed_ && edge.a != edge.b) leaving_[edge.b].push_back(static_cast<std::int64_t>(i));
+      if (leads_back(i) && edge.a != edge.b) leaving_[edge.b].push_back(static_cast<std::int64_t>(i));
     }
   }
 
@@ -163,7 +164,7 @@ class EdgePlanner {
     return walk;
   }
 
-  // A node in the middle of each edge, worth 1; other nodes are worth nothing. REQUIRES: directed.
+  // A node in the middle of each edge, worth 1; other nodes are worth nothing. REQUIRES: is_planned().
   struct Planned {
     EdgeWalk walk;
     double bound;  // on its edges
@@ -221,7 +222,7 @@ class EdgePlanner {
     for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
       const auto& [a, b, cost] = graph_.edges[i];
       double least = to[a] + cost + cost_to_end(b);
-      if (!directed_) least = std::min(least, to[b] + cost + cost_to_end(a));
+      if (leads_back(i)) least = std::min(least, to[b] + cost + cost_to_end(a));
       if (least <= limit_ && graph_.prize(i) > 0) edges.emplace_back(cost, graph_.prize(i));
     }
     const auto cost_for_prize = [](const std::pair<double, double>& edge) { return edge.first / edge.second; };
@@ -250,7 +251,11 @@ class EdgePlanner {
     return prize;
   }
 
+  // Whether it is planned by planned(); else by many greedy walks.
+  bool is_planned() const { return directed_ && !mixed_; }
+
  private:
+  bool leads_back(std::size_t edge) const { return !directed_ || graph_.leads_back(edge); }
   double cost_to_end(NodeId node) const {
     const double cost = task_.cost_to_end(node);
     if (!reset_cost_ || task_.ends_anywhere()) return cost;
@@ -273,6 +278,7 @@ class EdgePlanner {
   const Multigraph& graph_;
   std::optional<double> reset_cost_;
   bool directed_;
+  bool mixed_;  // directed, but for some edges
   double limit_;
   std::vector<std::vector<std::int64_t>> leaving_;  // [N], edges that lead on from a node
 };
@@ -290,6 +296,7 @@ WalkableEdges walkable_edges(const World& world) {
     if (world.is_blocked(all.edges[i].a) || world.is_blocked(all.edges[i].b)) continue;
     walkable.graph.edges.push_back(all.edges[i]);
     if (!all.prizes.empty()) walkable.graph.prizes.push_back(all.prizes[i]);
+    if (!all.both_ways.empty()) walkable.graph.both_ways.push_back(all.both_ways[i]);
     walkable.numbers.push_back(static_cast<std::int64_t>(i));
   }
   return walkable;
@@ -313,8 +320,8 @@ void count_edges(const World& world, EdgeCover& cover) {
   }
 }
 
-std::optional<EdgeWalk> walk_over_all(const World& world, const Task& task, const Multigraph& graph,
-                                      std::optional<double> reset_cost) {
+std::optional<PostmanWalk> walk_over_all(const World& world, const Task& task, const Multigraph& graph,
+                                         std::optional<double> reset_cost) {
   const EdgeKind kind = world.open().directed() ? EdgeKind::kDirected : EdgeKind::kUndirected;
   if (has_too_many_odd_nodes(graph, kind, world.node_count())) return std::nullopt;
   return postman_walk(graph, kind, world.node_count(), task.start(), {.end = task.end(), .reset_cost = reset_cost});
@@ -322,18 +329,28 @@ std::optional<EdgeWalk> walk_over_all(const World& world, const Task& task, cons
 
 }  // namespace
 
+namespace {
+
+// Of a cover that walks all.
+void compare_with_all(const PostmanWalk& all, EdgeCover& cover) {
+  constexpr double kAsCheap = 1 + 1e-9;
+  cover.least_cost = all.bound;
+  cover.all_cheapest = cover.walk.cost <= all.bound * kAsCheap;
+}
+
+}  // namespace
+
 EdgeCover cover_edges(const World& world, const Task& task, std::optional<double> reset_cost,
                       const std::function<Plan(const World&, const Task&)>& plan_nodes) {
   const auto [graph, numbers] = walkable_edges(world);
-  const bool directed = world.open().directed();
   EdgeCover cover{.walk = {}, .reset_cost = reset_cost};
   const auto all = walk_over_all(world, task, graph, reset_cost);
   const EdgePlanner planner(world, task, graph, reset_cost);
   cover.bound = planner.bound();
-  if (all && all->cost <= task.limit()) {
-    cover.walk = *all;
-    cover.all_cheapest = true;
+  if (all && all->walk.cost <= task.limit()) {
+    cover.walk = all->walk;
     cover.policy = "postman";
+    compare_with_all(*all, cover);
   } else if (auto exact = planner.exact()) {
     cover.walk = *std::move(exact);
     cover.policy = "exact";
@@ -341,8 +358,8 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
   } else {
     Rng rng(kNoiseSeed);
     std::vector<EdgeWalk> walks = {planner.greedy({}, 0, rng)};
-    if (all) walks.push_back(planner.greedy(all->edges, 0, rng));
-    if (directed) {
+    if (all) walks.push_back(planner.greedy(all->walk.edges, 0, rng));
+    if (planner.is_planned()) {
       auto [walk, bound] = planner.planned(plan_nodes);
       walks.push_back(std::move(walk));
       cover.bound = std::min(cover.bound, bound);
@@ -367,8 +384,7 @@ EdgeCover judge_edges(const World& world, const Task& task, std::optional<double
   count_edges(world, cover);
   cover.bound = EdgePlanner(world, task, graph, reset_cost).bound();
   if (cover.walked < cover.edges) return cover;
-  const auto all = walk_over_all(world, task, graph, reset_cost);
-  cover.all_cheapest = all && cover.walk.cost <= all->cost;
+  if (const auto all = walk_over_all(world, task, graph, reset_cost)) compare_with_all(*all, cover);
   return cover;
 }
 

@@ -33,6 +33,7 @@ struct EdgeCover {
   bool has_prizes = false;                // some edge is worth other than 1
   double bound = 0;                       // no walk within the budget has a higher prize
   bool all_cheapest = false;              // it walks all, and none that does is cheaper
+  double least_cost = 0;                  // of any walk over all edges, where this is one; 0 where that is not known
   std::string policy = {};                // what made it, where that was none of plan_nodes
   std::optional<double> reset_cost = {};  // of jumps to the start that walks may make
 
@@ -45,8 +46,8 @@ struct EdgeCover {
 // [postman_walk()]. An edge is worth its own prize, else 1, whatever the nodes' prizes are.
 //
 // Where not all can be walked: graphs of up to kExactEdges edges are searched by states. A directed graph is planned as
-// nodes are, on a graph with a node in the middle of each edge. An undirected one by the beginning of the cheapest walk
-// over all, and by going to the nearest edge left again and again, with distances that seem a little longer by chance;
+// nodes are, on a graph with a node in the middle of each edge. Others by the beginning of the cheapest walk over all,
+// and by going to the nearest edge left again and again, with distances that seem a little longer by chance;
 // the best of these counts.
 //
 // plan_nodes: plans a task of a world, within a clock. reset_cost: of a jump to the start, in a directed graph.

@@ -69,6 +69,7 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
   require_length(arrays.costs.size(), arrays.edges.size() / 2, "costs");
   require_length(arrays.labels.size(), arrays.edges.size() / 2, "labels of edges");
   require_length(arrays.prizes.size(), arrays.edges.size() / 2, "prizes of edges");
+  require_length(arrays.both_ways.size(), arrays.edges.size() / 2, "edges that lead both ways");
   require_length(map.blocked.size(), n, "blocked");
   require_length(map.labels.size(), n, "labels");
   require_length(map.prizes.size(), n, "prizes");
@@ -98,6 +99,7 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
   if (map.blocked.empty()) map.blocked.resize(n);
   const bool worth_the_same = std::ranges::all_of(arrays.prizes, [](double prize) { return prize == 1; });
   Multigraph all{.edges = std::move(edges), .labels = arrays.labels};
+  if (arrays.directed) all.both_ways = arrays.both_ways;
   if (!worth_the_same) all.prizes.assign(arrays.prizes.begin(), arrays.prizes.end());
   set_edges(map, static_cast<NodeId>(arrays.node_count), std::move(all),
             arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);

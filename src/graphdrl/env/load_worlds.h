@@ -26,6 +26,7 @@ struct EdgeArrays {
   bool directed = false;
   std::vector<std::string> labels = {};  // [E]; empty where no edge has one
   std::span<const double> prizes = {};   // [E]; empty where each is 1
+  std::vector<bool> both_ways = {};      // [E], of a directed graph: those that lead back, too; empty for none
 };
 
 // The world of these edges; `map` has all but the graph, and what is empty in it is not there. Throws Error on lengths

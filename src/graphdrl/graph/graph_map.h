@@ -34,11 +34,24 @@ struct Multigraph {
   bool weighted() const {
     return std::ranges::any_of(edges, [](const Edge& edge) { return edge.cost != 1; });
   }
+  // [edges], of a directed graph: those that lead back, too, and are one all the same; empty where none does. A graph
+  // that has both kinds is mixed.
+  std::vector<bool> both_ways = {};
+
+  bool leads_back(std::size_t edge) const { return !both_ways.empty() && both_ways[edge]; }
+  // With the ways back as edges of their own: [edges], and the ways back.
+  std::vector<Edge> arcs() const {
+    std::vector<Edge> arcs = edges;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      if (leads_back(i) && edges[i].a != edges[i].b) arcs.push_back({edges[i].b, edges[i].a, edges[i].cost});
+    }
+    return arcs;
+  }
   double prize(std::size_t edge) const { return prizes.empty() ? 1 : prizes[edge]; }
   // What an edge is called; empty where it has no label.
   std::string label(std::size_t edge) const { return labels.empty() ? "" : labels[edge]; }
   // Edges beside another one between the same nodes. graph: the simple graph of these edges.
-  std::int64_t parallel_edges(const Graph& graph) const { return std::ssize(edges) - loops() - graph.edge_count(); }
+  std::int64_t parallel_edges(const Graph& graph) const { return std::ssize(arcs()) - loops() - graph.edge_count(); }
 };
 
 // A graph with its obstacles.
@@ -57,10 +70,25 @@ inline Multigraph all_edges(const GraphMap& map) {
   return map.multigraph ? *map.multigraph : Multigraph{.edges = map.graph.edges()};
 }
 
-// Gives a map edges, and their list where its graph has not all of them, or they have labels or prizes.
+// The same with each way back as an edge of its own, for files that do not know edges of both kinds.
+inline Multigraph one_way(const Multigraph& all) {
+  if (all.both_ways.empty()) return all;
+  Multigraph arcs = all;
+  arcs.both_ways.clear();
+  arcs.edges = all.arcs();
+  for (std::size_t i = 0; i < all.edges.size(); ++i) {
+    if (!all.leads_back(i) || all.edges[i].a == all.edges[i].b) continue;
+    if (!all.labels.empty()) arcs.labels.push_back(all.labels[i]);
+    if (!all.prizes.empty()) arcs.prizes.push_back(all.prizes[i]);
+  }
+  return arcs;
+}
+
+// Gives a map edges, and their list where its graph does not say all of it.
 inline void set_edges(GraphMap& map, NodeId node_count, Multigraph all, EdgeKind kind) {
-  map.graph = Graph::from_edges(node_count, all.edges, kind);
-  const bool whole = std::ssize(all.edges) == map.graph.edge_count() && all.labels.empty() && all.prizes.empty();
+  map.graph = Graph::from_edges(node_count, all.arcs(), kind);
+  const bool plain = all.labels.empty() && all.prizes.empty() && all.both_ways.empty();
+  const bool whole = plain && std::ssize(all.edges) == map.graph.edge_count();
   map.multigraph = whole ? nullptr : std::make_shared<const Multigraph>(std::move(all));
 }
 

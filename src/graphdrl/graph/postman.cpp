@@ -35,6 +35,7 @@ class WholeCosts {
     scale_ = whole ? 1 : kFineCosts / most;
   }
   std::int64_t of(double cost) const { return std::llround(cost * scale_); }
+  double back(double whole) const { return whole / scale_; }
 
  private:
   double scale_;
@@ -48,7 +49,7 @@ class CheapestEdges {
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
       const auto& [a, b, cost] = graph.edges[i];
       take(a, b, static_cast<std::int64_t>(i), graph);
-      if (!simple.directed()) take(b, a, static_cast<std::int64_t>(i), graph);
+      if (!simple.directed() || graph.leads_back(i)) take(b, a, static_cast<std::int64_t>(i), graph);
     }
   }
   std::int64_t edge(NodeId from, NodeId to) const { return edge_[from][simple_.index_of(from, to)]; }
@@ -154,47 +155,116 @@ std::optional<EdgeWalk> eulerian_walk(const Multigraph& graph, bool directed, No
   return walk;
 }
 
-std::optional<EdgeWalk> directed_walk(const Multigraph& graph, const Graph& simple, NodeId start,
-                                      const PostmanOptions& options) {
-  const NodeId count = simple.node_count();
-  const double reset_cost = options.reset_cost.value_or(0);
-  const WholeCosts whole(simple, reset_cost);
-  const auto most = static_cast<std::int64_t>(graph.edges.size()) + 1;  // of any use of an edge
-  const int end = options.end == kNoNode ? count : options.end;         // anywhere: a node beyond all others
-  LeastCostFlow flow(count + 1);
-  struct Used {
-    LeastCostFlow::Arc arc;
-    Part part;
+// Walks over all edges of a directed or mixed graph.
+class DirectedPostman {
+ public:
+  DirectedPostman(const Multigraph& graph, const Graph& simple, NodeId start, const PostmanOptions& options)
+      : graph_(graph),
+        simple_(simple),
+        start_(start),
+        options_(options),
+        reset_cost_(options.reset_cost.value_or(0)),
+        whole_(simple, reset_cost_),
+        cheapest_(graph, simple) {}
+
+  std::optional<PostmanWalk> walk() const {
+    std::vector<bool> turned(graph_.edges.size());  // edges that lead both ways are walked from b to a
+    Relaxed relaxed = solve(turned, !graph_.both_ways.empty());
+    if (!relaxed.flows) return std::nullopt;
+    std::vector<std::size_t> undecided;
+    for (std::size_t i = 0; i < relaxed.turns.size(); ++i) {
+      turned[i] = relaxed.turns[i] == 2;
+      if (relaxed.turns[i] == 1) undecided.push_back(i);
+    }
+    const double bound = relaxed.cost;
+    Relaxed best = graph_.both_ways.empty() ? std::move(relaxed) : solve(turned, false);
+    const auto tries = std::min<std::int64_t>(std::ssize(undecided), kTurnWork / std::ssize(graph_.edges));
+    for (std::int64_t i = 0; i < tries && best.cost > bound; ++i) {
+      turned[undecided[i]] = true;
+      Relaxed other = solve(turned, false);
+      if (other.flows && other.cost < best.cost) {
+        best = std::move(other);
+      } else {
+        turned[undecided[i]] = false;
+      }
+    }
+    if (!best.flows) return std::nullopt;
+    auto walk = eulerian_walk(graph_, /*directed=*/true, simple_.node_count(), start_, best.parts, reset_cost_);
+    if (!walk) return std::nullopt;
+    // Costs that were rounded tell nothing finer.
+    return PostmanWalk{.walk = *walk, .bound = best.cost == bound ? walk->cost : whole_.back(bound)};
+  }
+
+ private:
+  static constexpr std::int64_t kTurnWork = 10'000;  // flows tried, times edges
+
+  struct Relaxed {
+    bool flows;
+    std::vector<Part> parts = {};
+    std::vector<std::int64_t> turns = {};  // [edges], halves of a turn
+    double cost = 0;                       // of all parts, in whole costs
   };
-  std::vector<Used> arcs;
-  const CheapestEdges cheapest(graph, simple);
-  for (NodeId node = 0; node < count; ++node) {
-    for (int i = 0; i < simple.degree(node); ++i) {
-      const NodeId next = simple.neighbours(node)[i];
-      arcs.push_back({.arc = flow.add(node, next, most, static_cast<double>(whole.of(simple.cost(node, i)))),
-                      .part = {node, next, cheapest.edge(node, next)}});
+
+  // turns: whether edges that lead both ways may be turned, by halves; parts are then no walk.
+  Relaxed solve(const std::vector<bool>& turned, bool turns) const {
+    const NodeId count = simple_.node_count();
+    const auto most = static_cast<std::int64_t>(graph_.edges.size()) + 1;  // of any use of an edge
+    const int end = options_.end == kNoNode ? count : options_.end;        // anywhere: a node beyond all others
+    LeastCostFlow flow(count + 1);
+    struct Used {
+      LeastCostFlow::Arc arc;
+      Part part;
+      double cost;
+    };
+    std::vector<Used> arcs;
+    const auto add = [&](const Part& part, double cost) {
+      const auto whole = static_cast<double>(whole_.of(cost));
+      arcs.push_back({.arc = flow.add(part.a, part.b, most, whole), .part = part, .cost = whole});
+    };
+    for (NodeId node = 0; node < count; ++node) {
+      for (int i = 0; i < simple_.degree(node); ++i) {
+        const NodeId next = simple_.neighbours(node)[i];
+        add({node, next, cheapest_.edge(node, next)}, simple_.cost(node, i));
+      }
+      if (options_.reset_cost && node != start_) add({node, start_, EdgeWalk::kResetEdge}, reset_cost_);
+      if (options_.end == kNoNode) flow.add(node, end, 1, 0);
     }
-    if (options.reset_cost && node != start) {
-      arcs.push_back({.arc = flow.add(node, start, most, static_cast<double>(whole.of(reset_cost))),
-                      .part = {node, start, EdgeWalk::kResetEdge}});
+    Relaxed solved{.flows = false};
+    std::vector<std::int64_t> surplus(count + 1, 0);  // arrivals less departures
+    std::vector<std::pair<std::size_t, LeastCostFlow::Arc>> turning;
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
+      const Edge& edge = graph_.edges[i];
+      const NodeId from = turned[i] ? edge.b : edge.a;
+      const NodeId to = turned[i] ? edge.a : edge.b;
+      --surplus[from];
+      ++surplus[to];
+      solved.parts.push_back({from, to, static_cast<std::int64_t>(i)});
+      solved.cost += static_cast<double>(whole_.of(edge.cost));
+      if (turns && graph_.leads_back(i) && from != to) turning.emplace_back(i, flow.add(to, from, 2, 0));
     }
-    if (options.end == kNoNode) flow.add(node, end, 1, 0);
+    ++surplus[start_];
+    --surplus[end];
+    for (int node = 0; node <= count; ++node) flow.supply(node, surplus[node]);
+    solved.flows = flow.run();
+    if (!solved.flows) return solved;
+    for (const Used& used : arcs) {
+      const std::int64_t units = flow.units(used.arc);
+      solved.parts.insert(solved.parts.end(), units, used.part);
+      solved.cost += static_cast<double>(units) * used.cost;
+    }
+    solved.turns.resize(graph_.edges.size());
+    for (const auto& [edge, arc] : turning) solved.turns[edge] = flow.units(arc);
+    return solved;
   }
-  std::vector<std::int64_t> surplus(count + 1, 0);  // arrivals less departures
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
-    const Edge& edge = graph.edges[i];
-    --surplus[edge.a];
-    ++surplus[edge.b];
-    parts.push_back({edge.a, edge.b, static_cast<std::int64_t>(i)});
-  }
-  ++surplus[start];
-  --surplus[end];
-  for (int node = 0; node <= count; ++node) flow.supply(node, surplus[node]);
-  if (!flow.run()) return std::nullopt;
-  for (const Used& used : arcs) parts.insert(parts.end(), flow.units(used.arc), used.part);
-  return eulerian_walk(graph, /*directed=*/true, count, start, parts, reset_cost);
-}
+
+  const Multigraph& graph_;
+  const Graph& simple_;
+  NodeId start_;
+  const PostmanOptions& options_;
+  double reset_cost_;
+  WholeCosts whole_;
+  CheapestEdges cheapest_;
+};
 
 // The partner of each of an even number of things, so that all pairs together cost least. costs: between any two.
 std::vector<std::size_t> cheapest_pairs(const std::vector<std::vector<std::int64_t>>& costs) {
@@ -284,14 +354,17 @@ bool has_too_many_odd_nodes(const Multigraph& graph, EdgeKind kind, NodeId node_
   return std::ranges::count(odd, true) > kMostOddNodes - 2;  // the ends of a walk are odd, too
 }
 
-std::optional<EdgeWalk> postman_walk(const Multigraph& graph, EdgeKind kind, NodeId node_count, NodeId start,
-                                     const PostmanOptions& options) {
-  const Graph simple = Graph::from_edges(node_count, graph.edges, kind);
-  if (kind == EdgeKind::kDirected) return directed_walk(graph, simple, start, options);
+std::optional<PostmanWalk> postman_walk(const Multigraph& graph, EdgeKind kind, NodeId node_count, NodeId start,
+                                        const PostmanOptions& options) {
+  const Graph simple = Graph::from_edges(node_count, graph.arcs(), kind);
+  if (kind == EdgeKind::kDirected) return DirectedPostman(graph, simple, start, options).walk();
   if (options.reset_cost) {
     throw Error({.what = "resets go with edges that lead one way", .expected = "a directed graph"});
   }
-  return undirected_walk(graph, simple, start, options.end);
+  auto walk = undirected_walk(graph, simple, start, options.end);
+  if (!walk) return std::nullopt;
+  const double cost = walk->cost;
+  return PostmanWalk{.walk = *std::move(walk), .bound = cost};
 }
 
 }  // namespace graphdrl

@@ -421,7 +421,7 @@ std::string format_dot(const GraphMap& map, const NodeColumn& column) {
     if (!column.name.empty() && !column.values[node].empty()) add(column.name, dot_quoted(column.values[node]));
     text += attributes.empty() ? fmt::format("  {};\n", node) : fmt::format("  {} [{}];\n", node, attributes);
   }
-  const Multigraph all = all_edges(map);
+  const Multigraph all = one_way(all_edges(map));
   const bool weighted = all.weighted();
   for (std::size_t i = 0; i < all.edges.size(); ++i) {
     const Edge& edge = all.edges[i];

@@ -218,14 +218,14 @@ Places GraphBuilder::take_places() {
   return {};
 }
 
-// Of a directed graph, an edge that leads both ways is two.
+// Of a directed graph, those that lead both ways come last.
 GraphBuilder::EdgeList GraphBuilder::take_edges() {
   directed_ = directed_ || !one_way_.edges.empty();
   if (!directed_) return std::move(both_ways_);
+  one_way_.leading_back = both_ways_.edges.size();
   for (std::size_t i = 0; i < both_ways_.edges.size(); ++i) {
     const Edge& edge = both_ways_.edges[i];
     one_way_.add(edge, both_ways_, i);
-    if (edge.a != edge.b) one_way_.add({edge.b, edge.a, edge.cost}, both_ways_, i);
   }
   return std::move(one_way_);
 }
@@ -249,7 +249,12 @@ GraphMap GraphBuilder::build() {
   const bool worth_the_same = std::ranges::all_of(all.prizes, [](double prize) { return prize == 1; });
   if (worth_the_same) all.prizes.clear();
   if (!all.prizes.empty()) all.prizes.resize(all.edges.size(), 1.0);
-  set_edges(map, count, {std::move(all.edges), std::move(all.labels), std::move(all.prizes)},
+  std::vector<bool> both_ways;
+  if (all.leading_back > 0) {
+    both_ways.resize(all.edges.size());
+    std::fill_n(both_ways.rbegin(), all.leading_back, true);
+  }
+  set_edges(map, count, {std::move(all.edges), std::move(all.labels), std::move(all.prizes), std::move(both_ways)},
             directed_ ? EdgeKind::kDirected : EdgeKind::kUndirected);
   map.blocked = std::move(blocked_);
   if (std::any_of(prize_.begin(), prize_.end(), [](double prize) { return prize != 1; })) {

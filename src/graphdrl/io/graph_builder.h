@@ -79,6 +79,7 @@ class GraphBuilder {
     std::vector<Edge> edges;
     std::vector<std::string> labels;  // as many as the last edge that has one
     std::vector<double> prizes;       // likewise
+    std::size_t leading_back = 0;     // of a directed graph: how many of the last ones lead both ways
 
     // Adds an edge of another list, with its label and prize.
     void add(const Edge& edge, const EdgeList& other, std::size_t place);

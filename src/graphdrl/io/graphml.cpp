@@ -194,6 +194,7 @@ std::string format_graphml(const GraphMap& map, const NodeColumn& column) {
     pugi::xml_node item = graph.append_child("edge");
     item.append_attribute("source") = id_of(edge.a).c_str();
     item.append_attribute("target") = id_of(edge.b).c_str();
+    if (all.leads_back(i)) item.append_attribute("directed") = "false";
     if (weighted) append_data(item, "weight", fmt::format("{}", edge.cost));
     if (const std::string label = all.label(i); !label.empty()) append_data(item, "label", xml_text(label));
     if (all.prize(i) != 1) append_data(item, "edge_prize", fmt::format("{}", all.prize(i)));

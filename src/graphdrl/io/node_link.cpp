@@ -204,7 +204,7 @@ GraphMap parse_node_link(std::string_view text, const std::string& source, const
 
 std::string format_node_link(const GraphMap& map) {
   const auto& [graph, blocked, labels, prizes, places, task, multigraph] = map;
-  const Multigraph all = all_edges(map);
+  const Multigraph all = one_way(all_edges(map));
   const bool weighted = all.weighted();
   std::string text;
   const std::vector<std::string> ids = fitted_labels(labels, valid_utf8);

@@ -37,7 +37,10 @@ void check_request(const World& world, const Task& task, const PlanRequest& requ
 class WorldClient {
  public:
   WorldClient(const World& world, std::uint64_t seed)
-      : directed_(world.open().directed()), edges_(walkable_edges(world)), moves_(world.node_count()) {
+      : directed_(world.open().directed()),
+        edges_(walkable_edges(world)),
+        moves_(world.node_count()),
+        walked_(edges_.graph.edges.size()) {
     const std::vector<Edge>& edges = edges_.graph.edges;
     const Multigraph* const all = world.multigraph();
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -45,7 +48,8 @@ class WorldClient {
       const bool named = directed_ && all != nullptr;
       const std::string label = named ? all->label(static_cast<std::size_t>(edges_.numbers[i])) : "";
       add(edges[i].a, i, label);
-      if (!directed_ && edges[i].a != edges[i].b) add(edges[i].b, i, label);
+      const bool back = !directed_ || edges_.graph.leads_back(i);
+      if (back && edges[i].a != edges[i].b) add(edges[i].b, i, label);
     }
     // The order of a file says nothing.
     Rng rng(seed);
@@ -61,8 +65,10 @@ class WorldClient {
   std::vector<OfferedMove> moves(NodeId node) const {
     std::vector<OfferedMove> moves;
     for (const Move& move : moves_[node]) {
-      moves.push_back(
-          {.name = move.name, .to = name_of(other_end(move.edge, node)), .cost = edges_.graph.edges[move.edge].cost});
+      moves.push_back({.name = move.name,
+                       .to = name_of(other_end(move.edge, node)),
+                       .cost = edges_.graph.edges[move.edge].cost,
+                       .tried = walked_[move.edge]});
     }
     return moves;
   }
@@ -70,6 +76,7 @@ class WorldClient {
   // Does a move; gives where it leads.
   NodeId walk(NodeId node, const std::string& name, EdgeWalk& walk) {
     const auto move = std::ranges::find(moves_[node], name, &Move::name);
+    walked_[move->edge] = true;
     walk.edges.push_back(edges_.numbers[move->edge]);
     walk.cost += edges_.graph.edges[move->edge].cost;
     return other_end(move->edge, node);
@@ -94,6 +101,7 @@ class WorldClient {
   bool directed_;
   WalkableEdges edges_;
   std::vector<std::vector<Move>> moves_;  // [N]
+  std::vector<bool> walked_;              // [edges], from either end
 };
 
 Answer explore_edges(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {

@@ -191,8 +191,8 @@ void ModelWalk::plan_over_edges(bool again) {
   const auto walked = [&](int edge) { return walked_[edge]; };
   if (std::ranges::none_of(number_of_, walked) || (again && std::ranges::all_of(number_of_, walked))) {
     const auto vertices = static_cast<NodeId>(model_.vertices.size());
-    if (auto walk = postman_walk(graph_, EdgeKind::kDirected, vertices, position_, {})) {
-      ahead_ = std::move(walk->edges);
+    if (auto found = postman_walk(graph_, EdgeKind::kDirected, vertices, position_, {})) {
+      ahead_ = std::move(found->walk.edges);
       std::ranges::reverse(ahead_);
       return;
     }

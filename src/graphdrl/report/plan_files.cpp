@@ -231,6 +231,7 @@ void add_edges(const Answer& answer, nlohmann::ordered_json& json) {
     json["max_edges"] = static_cast<std::int64_t>(edges.bound);
   }
   json["gap"] = edges.percent(edges.bound - edges.prize);
+  if (edges.least_cost > 0) json["least_cost"] = edges.least_cost;
   json["optimal"] = edges.optimal();
 }
 

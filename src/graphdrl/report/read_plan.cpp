@@ -136,16 +136,19 @@ std::optional<End> end_in(const nlohmann::json& document, const World& world, co
 EdgeWalk edge_walk(const World& world, std::vector<NodeId> nodes, const nlohmann::json& document,
                    std::optional<double> reset_cost, const std::string& file) {
   const Multigraph all = all_edges(world);
+  const auto leads_back = [&](std::int64_t edge) {
+    return !world.open().directed() || all.leads_back(static_cast<std::size_t>(edge));
+  };
   const auto joins = [&](std::int64_t edge, NodeId from, NodeId to) {
     const Edge& one = all.edges[static_cast<std::size_t>(edge)];
-    return (one.a == from && one.b == to) || (!world.open().directed() && one.a == to && one.b == from);
+    return (one.a == from && one.b == to) || (leads_back(edge) && one.a == to && one.b == from);
   };
   std::map<std::pair<NodeId, NodeId>, std::vector<std::int64_t>> between;  // cheapest first
   for (std::size_t i = 0; i < all.edges.size(); ++i) {
     const auto& [a, b, cost] = all.edges[i];
     if (world.is_blocked(a) || world.is_blocked(b)) continue;
     between[{a, b}].push_back(static_cast<std::int64_t>(i));
-    if (!world.open().directed() && a != b) between[{b, a}].push_back(static_cast<std::int64_t>(i));
+    if (leads_back(static_cast<std::int64_t>(i)) && a != b) between[{b, a}].push_back(static_cast<std::int64_t>(i));
   }
   const auto cost_of = [&](std::int64_t edge) { return all.edges[static_cast<std::size_t>(edge)].cost; };
   for (auto& [ends, edges] : between) std::ranges::stable_sort(edges, {}, cost_of);
