@@ -101,67 +101,25 @@ class EdgePlanner {
   // A walk that begins with these edges, as far as the budget goes, and goes on to the nearest edge left; then to the
   // end. noise: by how much of themselves distances may seem longer.
   EdgeWalk greedy(const std::vector<std::int64_t>& first, double noise, Rng& rng) const {
-    EdgeWalk walk{.nodes = {task_.start()}};
-    std::vector<bool> walked(graph_.edges.size());
-    const auto take = [&](std::int64_t edge, NodeId next, double cost) {
-      walk.edges.push_back(edge);
-      walk.nodes.push_back(next);
-      walk.cost += cost;
-      if (edge >= 0) walked[edge] = true;
-    };
+    Growing grown{.walk = {.nodes = {task_.start()}}, .walked = std::vector<bool>(graph_.edges.size())};
+    EdgeWalk& walk = grown.walk;
     for (const std::int64_t edge : first) {
-      const NodeId here = walk.nodes.back();
-      const NodeId next = edge < 0 ? task_.start() : other_end(edge, here);
+      const NodeId next = edge < 0 ? task_.start() : other_end(edge, walk.nodes.back());
       const double cost = edge < 0 ? reset_cost_.value_or(kNoLimit) : graph_.edges[edge].cost;
       if (walk.cost + cost + cost_to_end(next) > limit_) break;
-      take(edge, next, cost);
+      take(grown, edge, next);
     }
-    NearestFirst search;
-    const Graph& open = world_.open();
-    const double most = graph_.prizes.empty() ? 1 : *std::ranges::max_element(graph_.prizes);
-    // The cheapest way to a node, over its cheapest edges.
-    const auto go_to = [&](NodeId goal) {
-      std::vector<NodeId> way;
-      search.append_path_to(goal, way);
-      for (const NodeId next : way) {
-        const std::int64_t edge = cheapest_between(walk.nodes.back(), next);
-        take(edge, next, graph_.edges[edge].cost);
-      }
-    };
-    while (true) {
-      const NodeId here = walk.nodes.back();
-      std::int64_t next_edge = -1;
-      NodeId at = kNoNode;
-      double least = kNoLimit;
-      const auto look_at = [&](NodeId node, double cost) {
-        for (const std::int64_t edge : leaving_[node]) {
-          const double whole = cost + graph_.edges[edge].cost;
-          const double prize = graph_.prize(static_cast<std::size_t>(edge));
-          if (walked[edge] || prize == 0) continue;
-          if (walk.cost + whole + cost_to_end(other_end(edge, node)) > limit_) continue;
-          const double seeming = (noise == 0 ? cost : whole * (1 + noise * rng.uniform())) / prize;
-          if (seeming >= least) continue;
-          least = seeming;
-          next_edge = edge;
-          at = node;
-        }
-        return cost >= least * most ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
-      };
-      if (look_at(here, 0) == NearestFirst::Next::kThrough) search.run(open, here, limit_ - walk.cost, look_at);
-      if (next_edge < 0) break;
-      if (at != here) go_to(at);
-      take(next_edge, other_end(next_edge, at), graph_.edges[next_edge].cost);
-    }
+    while (take_nearest(grown, noise, rng)) continue;
     if (reset_cost_ && cost_to_end(walk.nodes.back()) < task_.cost_to_end(walk.nodes.back())) {
-      take(EdgeWalk::kResetEdge, task_.start(), *reset_cost_);
+      take(grown, EdgeWalk::kResetEdge, task_.start());
     }
     if (!task_.ends_anywhere() && walk.nodes.back() != task_.end()) {
-      search.run(open, walk.nodes.back(), kNoLimit, [&](NodeId node, double) {
+      grown.search.run(world_.open(), walk.nodes.back(), kNoLimit, [&](NodeId node, double) {
         return node == task_.end() ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
       });
-      go_to(task_.end());
+      go_to(grown, task_.end());
     }
-    return walk;
+    return std::move(grown.walk);
   }
 
   // A node in the middle of each edge, worth 1; other nodes are worth nothing. REQUIRES: is_planned().
@@ -255,6 +213,56 @@ class EdgePlanner {
   bool is_planned() const { return directed_ && !mixed_; }
 
  private:
+  struct Growing {
+    EdgeWalk walk;
+    std::vector<bool> walked;  // [edges]
+    NearestFirst search = {};
+  };
+
+  void take(Growing& grown, std::int64_t edge, NodeId next) const {
+    grown.walk.edges.push_back(edge);
+    grown.walk.nodes.push_back(next);
+    grown.walk.cost += edge < 0 ? *reset_cost_ : graph_.edges[edge].cost;
+    if (edge >= 0) grown.walked[edge] = true;
+  }
+
+  // The cheapest way to a node that the search met, over its cheapest edges.
+  void go_to(Growing& grown, NodeId goal) const {
+    std::vector<NodeId> way;
+    grown.search.append_path_to(goal, way);
+    for (const NodeId next : way) take(grown, cheapest_between(grown.walk.nodes.back(), next), next);
+  }
+
+  // Goes to the nearest edge left, for its prize, and over it. False where none can be paid for.
+  bool take_nearest(Growing& grown, double noise, Rng& rng) const {
+    const NodeId here = grown.walk.nodes.back();
+    const double most = graph_.prizes.empty() ? 1 : *std::ranges::max_element(graph_.prizes);
+    std::int64_t nearest = -1;
+    NodeId at = kNoNode;
+    double least = kNoLimit;
+    const auto look_at = [&](NodeId node, double cost) {
+      for (const std::int64_t edge : leaving_[node]) {
+        const double whole = cost + graph_.edges[edge].cost;
+        const double prize = graph_.prize(static_cast<std::size_t>(edge));
+        if (grown.walked[edge] || prize == 0) continue;
+        if (grown.walk.cost + whole + cost_to_end(other_end(edge, node)) > limit_) continue;
+        const double seeming = (noise == 0 ? cost : whole * (1 + noise * rng.uniform())) / prize;
+        if (seeming >= least) continue;
+        least = seeming;
+        nearest = edge;
+        at = node;
+      }
+      return cost >= least * most ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+    };
+    if (look_at(here, 0) == NearestFirst::Next::kThrough) {
+      grown.search.run(world_.open(), here, limit_ - grown.walk.cost, look_at);
+    }
+    if (nearest < 0) return false;
+    if (at != here) go_to(grown, at);
+    take(grown, nearest, other_end(nearest, at));
+    return true;
+  }
+
   bool leads_back(std::size_t edge) const { return !directed_ || graph_.leads_back(edge); }
   double cost_to_end(NodeId node) const {
     const double cost = task_.cost_to_end(node);

@@ -17,8 +17,7 @@ struct CheckOptions {
   std::string map;
   std::string walk;
   AskedText asked;
-  std::string cover = "nodes";
-  std::optional<double> reset_cost;
+  CoverText cover;
   MapOptions reading;
   std::vector<std::string> out;
   bool json = false;
@@ -33,8 +32,9 @@ void check(const CheckOptions& options) {
   const GivenTask& given = world.given();
   if (!asked.budget && given.budget) asked.budget = Budget(*given.budget);
   if (!asked.end && given.end != kNoNode) asked.end = End::at(given.end);
-  const bool edges = parse_cover(options.cover) == Cover::kEdges;
-  Answer answer = read_plan(world, options.walk, {.task = asked, .edges = edges, .reset_cost = options.reset_cost});
+  const bool edges = parse_cover(options.cover.cover) == Cover::kEdges;
+  Answer answer =
+      read_plan(world, options.walk, {.task = asked, .edges = edges, .reset_cost = options.cover.reset_cost});
   check_walk(answer, options.walk);
   judge(answer);
   std::vector<std::function<void()>> outputs;
@@ -67,16 +67,7 @@ void add_check_command(CLI::App& app) {
   add_text_option(command, "--end", options->asked.end, "E",
                   "Where it must end: anywhere, start, or a node. The default is the map's, else the plan's, else "
                   "anywhere");
-  command
-      .add_option("--cover", options->cover,
-                  "What counts: nodes, or edges walked whole; the default is what the plan says, else nodes")
-      ->check(CLI::IsMember({"nodes", "edges"}));
-  command
-      .add_option(
-          "--reset-cost", options->reset_cost,
-          "Of --cover edges: what a jump back to the start costs. The default is the plan's, else there is none")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("C");
+  add_cover_options(command, options->cover);
   add_text_option(
       command, "--out", options->out, "FILE",
       "Also write it to this file, in the format of its ending: " + plan_file_endings() + "; may be given again");

@@ -28,8 +28,7 @@ struct EvaluateOptions {
   std::string score = "visited";
   std::string until;
   std::vector<std::string> believed;
-  std::string cover = "nodes";
-  std::optional<double> reset_cost;
+  CoverText cover;
   bool json = false;
 };
 
@@ -90,7 +89,7 @@ void evaluate(const EvaluateOptions& options) {
   comparison.reveal = Reveal::parse(options.reveal);
   comparison.score = parse_score(options.score);
   comparison.until_covered = !options.until.empty();
-  const bool edges = parse_cover(options.cover) == Cover::kEdges;
+  const bool edges = parse_cover(options.cover.cover) == Cover::kEdges;
   if (comparison.policies == kLadder && edges) {
     comparison.policies = comparison.reveal.all() ? kEdgeLadder : kOnlineEdgeLadder;
     if (comparison.until_covered) std::erase(comparison.policies, "random-walk");  // which may never end
@@ -99,8 +98,8 @@ void evaluate(const EvaluateOptions& options) {
   }
   if (edges) {
     if (!options.believed.empty()) throw Error({.what = "old maps go with nodes", .got = "--cover edges"});
-    compare_edges(comparison, options.reset_cost);
-  } else if (options.reset_cost) {
+    compare_edges(comparison, options.cover.reset_cost);
+  } else if (options.cover.reset_cost) {
     throw Error({.what = "resets go with --cover edges"});
   }
   if (!options.believed.empty() && comparison.policies == kOnlineLadder) {
@@ -161,15 +160,7 @@ void add_evaluate_command(CLI::App& app) {
       ->check(CLI::IsMember({"visited", "seen"}))
       ->needs(reveal)
       ->capture_default_str();
-  command
-      .add_option("--cover", options->cover, "What counts: nodes, or edges walked whole, loops and parallel ones too")
-      ->check(CLI::IsMember({"nodes", "edges"}))
-      ->capture_default_str();
-  command
-      .add_option("--reset-cost", options->reset_cost,
-                  "Of --cover edges where edges lead one way: what it costs to jump back to the start")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("C");
+  add_cover_options(command, options->cover);
   command
       .add_option("--believed", options->believed,
                   "Old maps for the policies that plan: as of --maps, as many and in the same order")

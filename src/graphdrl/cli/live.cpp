@@ -56,7 +56,7 @@ class InputLines {
 };
 
 LiveOptions options_of(const LiveRequest& request) {
-  LiveOptions options{.cover = parse_cover(request.cover), .reset_cost = request.reset_cost};
+  LiveOptions options{.cover = parse_cover(request.cover.cover), .reset_cost = request.cover.reset_cost};
   if (!request.budget.empty()) {
     const std::optional<double> budget = Budget::parse(request.budget).cost();
     if (!budget) {

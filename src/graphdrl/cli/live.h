@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "graphdrl/cli/program.h"
+
 namespace CLI {
 class App;
 }
@@ -21,8 +23,7 @@ struct LiveArguments {
 
 // What `explore` asks for beside.
 struct LiveRequest {
-  std::string cover = "nodes";
-  std::optional<double> reset_cost = {};
+  CoverText cover = {};
   std::string budget;
   std::string end;
   std::string score;  // empty where it was not given

@@ -34,8 +34,7 @@ struct PlanOptions {
   std::string reveal = "all";
   std::string score = "visited";
   std::string until;
-  std::string cover = "nodes";
-  std::optional<double> reset_cost;
+  CoverText cover;
   std::string believed;
   std::optional<double> think_time_s;
   std::vector<std::string> out;
@@ -87,7 +86,7 @@ void plan(const PlanOptions& options) {
   const World world = load_one_world(options.map, options.reading);
   Asked asked = asked_of(world, options.asked);
   const bool until_covered = !options.until.empty();
-  const bool edges = parse_cover(options.cover) == Cover::kEdges;
+  const bool edges = parse_cover(options.cover.cover) == Cover::kEdges;
   if (edges && asked.budget && !asked.budget->cost()) {
     throw Error({.what = "a multiple is of nodes, and edges count here",
                  .expected = "a budget in units of cost, or none",
@@ -101,7 +100,7 @@ void plan(const PlanOptions& options) {
   request.score = parse_score(options.score);
   request.until_covered = until_covered;
   if (edges) request.cover = Cover::kEdges;
-  request.reset_cost = options.reset_cost;
+  request.reset_cost = options.cover.reset_cost;
   if (!options.believed.empty()) {
     request.believed = believe(load_one_world(options.believed, options.reading), world);
   }
@@ -158,18 +157,26 @@ void add_shared_outputs(CLI::App& command, PlanOptions& options) {
   add_memory_limit_option(command);
 }
 
-void add_cover_options(CLI::App& command, PlanOptions& options) {
-  command
-      .add_option(
-          "--cover", options.cover,
-          "What counts: nodes, or edges walked whole, loops and parallel ones too; without a budget all of them")
-      ->check(CLI::IsMember({"nodes", "edges"}))
-      ->capture_default_str();
-  command
-      .add_option("--reset-cost", options.reset_cost,
-                  "Of --cover edges where edges lead one way: what it costs to jump back to the start")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("C");
+// `explore --live`, which has no map.
+void explore_live_with(const PlanOptions& options, const CLI::App& command) {
+  constexpr std::array kShared = {"--cover",  "--reset-cost", "--budget",       "--end",
+                                  "--policy", "--score",      "--connectivity", "--seed",
+                                  "--out",    "--think-time", "--threads",      "--memory-limit"};
+  for (const CLI::Option* const option : command.get_options()) {
+    const bool goes_with = option->get_group() == kWithLive || option->get_name() == "--live" ||
+                           std::ranges::find(kShared, option->get_name()) != kShared.end();
+    if (option->count() > 0 && !goes_with) throw CLI::ExcludesError("--live", option->get_name());
+  }
+  const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
+  explore_live(options.live, {.cover = options.cover,
+                              .budget = options.asked.budget,
+                              .end = options.asked.end,
+                              .score = given("--score") ? options.score : "",
+                              .connectivity = given("--connectivity") && !options.reading.diagonals ? 4 : 8,
+                              .policy = options.request.policy,
+                              .think_s = options.think_time_s,
+                              .seed = options.request.seed,
+                              .out = options.out});
 }
 
 }  // namespace
@@ -180,7 +187,7 @@ void add_plan_command(CLI::App& app) {
   add_shared_options(command, *options);
   options->request.policy = kPlanPolicy;
   command.add_option("--policy", options->request.policy, policy_names())->type_name("P")->capture_default_str();
-  add_cover_options(command, *options);
+  add_cover_options(command, options->cover);
   command
       .add_option("--iterations", options->request.iterations,
                   "Of search: how many steps to take in all; the default depends on the size of the world")
@@ -214,7 +221,7 @@ void add_explore_command(CLI::App& app) {
   command.add_option("--score", options->score, "What counts: nodes visited, or nodes seen")
       ->check(CLI::IsMember({"visited", "seen"}))
       ->capture_default_str();
-  add_cover_options(command, *options);
+  add_cover_options(command, options->cover);
   add_text_option(command, "--believed", options->believed, "OLD",
                   "An old map, of which some may have changed: cells are the same by place, other nodes by name");
   CLI::Option* const until =
@@ -239,28 +246,7 @@ void add_explore_command(CLI::App& app) {
   add_live_options(command, options->live);
   command.get_option("map")->required(false);
   command.callback([options, &command] {
-    if (options->live.live) {
-      for (const CLI::Option* const option : command.get_options()) {
-        constexpr std::array kOthers = {"--cover",  "--reset-cost", "--budget",       "--end",
-                                        "--policy", "--score",      "--connectivity", "--seed",
-                                        "--out",    "--think-time", "--threads",      "--memory-limit"};
-        const bool goes_with = option->get_group() == kWithLive || option->get_name() == "--live" ||
-                               std::ranges::find(kOthers, option->get_name()) != kOthers.end();
-        if (option->count() > 0 && !goes_with) throw CLI::ExcludesError("--live", option->get_name());
-      }
-      const auto given = [&](const char* option) { return command.get_option(option)->count() > 0; };
-      return explore_live(options->live,
-                          {.cover = options->cover,
-                           .reset_cost = options->reset_cost,
-                           .budget = options->asked.budget,
-                           .end = options->asked.end,
-                           .score = given("--score") ? options->score : "",
-                           .connectivity = given("--connectivity") && !options->reading.diagonals ? 4 : 8,
-                           .policy = options->request.policy,
-                           .think_s = options->think_time_s,
-                           .seed = options->request.seed,
-                           .out = options->out});
-    }
+    if (options->live.live) return explore_live_with(*options, command);
     if (options->map.empty()) throw CLI::RequiredError("map");
     plan(*options);
   });

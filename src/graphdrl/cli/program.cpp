@@ -151,6 +151,19 @@ void add_threads_option(CLI::App& command) {
       ->type_name("N");
 }
 
+void add_cover_options(CLI::App& command, CoverText& text) {
+  command
+      .add_option("--cover", text.cover,
+                  "What counts: nodes, or edges walked whole, loops and parallel ones too; edges without a budget: all")
+      ->check(CLI::IsMember({"nodes", "edges"}))
+      ->capture_default_str();
+  command
+      .add_option("--reset-cost", text.reset_cost,
+                  "Of --cover edges where edges lead one way: what it costs to jump back to the start")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("C");
+}
+
 void add_map_options(CLI::App& command, MapOptions& options) {
   options.note = [](const std::string& note) { print_diagnostic(escaped(note) + "\n"); };
   options.progress = [display = std::make_shared<std::optional<ProgressDisplay>>()](double share) {

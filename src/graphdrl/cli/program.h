@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,15 @@ void add_threads_option(CLI::App& command);
 
 // Adds the options that say how maps are read; notes go to standard error.
 void add_map_options(CLI::App& command, MapOptions& options);
+
+// What counts, as users say it.
+struct CoverText {
+  std::string cover = "nodes";
+  std::optional<double> reset_cost = {};  // where edges count
+};
+
+// Adds --cover and --reset-cost.
+void add_cover_options(CLI::App& command, CoverText& text);
 
 // Adds an option or an argument that takes a text, called `type` in help, and refuses an empty one, such as that of an
 // unset variable.

@@ -235,6 +235,27 @@ void add_edges(const Answer& answer, nlohmann::ordered_json& json) {
   json["optimal"] = edges.optimal();
 }
 
+// How the map became known, and what one gets that knows it.
+void add_discovery(const Answer& answer, nlohmann::ordered_json& json) {
+  if (!answer.reveal.all()) {
+    json["reveal"] = answer.reveal.text();
+    json["score"] = answer.score == Score::kSeen ? "seen" : "visited";
+    json["seen"] = answer.discovered.nodes.size();
+    json["seen_nodes"] = answer.discovered.nodes;
+    json["seen_after_step"] = answer.edges ? seen_with_loops(answer) : answer.discovered.after_step;
+    if (!answer.task.ends_anywhere()) json["no_way_back"] = answer.discovered.no_way_back;
+  }
+  if (answer.known) {
+    json["known"] = {{"visited", answer.known->visited}, {"prize", answer.known->prize}, {"cost", answer.known->cost}};
+    if (answer.edges) {
+      const char* const worth = answer.edges->has_prizes ? "edge_prize" : "edges_walked";
+      json["known"] = {{worth, answer.known->prize}, {"cost", answer.known->cost}};
+    }
+    const auto price = answer.price_of_ignorance();
+    json["price_of_ignorance"] = price ? Json(*price) : Json();
+  }
+}
+
 }  // namespace
 
 std::vector<double> costs_so_far(const Answer& answer) {
@@ -279,23 +300,7 @@ nlohmann::ordered_json plan_json(const Answer& answer) {
   json["coverage"] = 100.0 * plan.visited / world.valid_count();
   if (world.has_prizes()) json["prize"] = plan.prize;
   json["cost"] = plan.cost;
-  if (!answer.reveal.all()) {
-    json["reveal"] = answer.reveal.text();
-    json["score"] = answer.score == Score::kSeen ? "seen" : "visited";
-    json["seen"] = answer.discovered.nodes.size();
-    json["seen_nodes"] = answer.discovered.nodes;
-    json["seen_after_step"] = answer.edges ? seen_with_loops(answer) : answer.discovered.after_step;
-    if (!answer.task.ends_anywhere()) json["no_way_back"] = answer.discovered.no_way_back;
-  }
-  if (answer.known) {
-    json["known"] = {{"visited", answer.known->visited}, {"prize", answer.known->prize}, {"cost", answer.known->cost}};
-    if (answer.edges) {
-      const char* const worth = answer.edges->has_prizes ? "edge_prize" : "edges_walked";
-      json["known"] = {{worth, answer.known->prize}, {"cost", answer.known->cost}};
-    }
-    const auto price = answer.price_of_ignorance();
-    json["price_of_ignorance"] = price ? Json(*price) : Json();
-  }
+  add_discovery(answer, json);
   if (answer.edges) {
     add_edges(answer, json);
     json["unreachable"] = answer.unreachable;
