@@ -8,10 +8,6 @@
 
 #include "graphdrl/cli/program.h"
 
-namespace CLI {
-class App;
-}
-
 namespace graphdrl {
 
 struct LiveArguments {
