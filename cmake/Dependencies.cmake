@@ -30,6 +30,9 @@ target_include_directories(graphdrl_cairo SYSTEM INTERFACE ${CAIRO_INCLUDE_DIR})
 target_link_libraries(graphdrl_cairo INTERFACE ${CAIRO_LIBRARY})
 
 # xxHash's header alone is used.
+find_path(LEMON_INCLUDE_DIR lemon/matching.h)
+require("${LEMON_INCLUDE_DIR}" LEMON liblemon-dev)
+
 find_path(XXHASH_INCLUDE_DIR xxhash.h)
 require("${XXHASH_INCLUDE_DIR}" xxHash libxxhash-dev)
 

@@ -214,7 +214,7 @@ class LiveExploration:
             Error: nothing was observed yet.
         """
         world = self._core.world()
-        return World(world, world.labels)
+        return World(world, world.labels or None)
 
     def plan(self) -> Plan:
         """The walk so far, with what was seen when, for `save`.

@@ -368,7 +368,8 @@ def upper_bound(
 ) -> float:
     """What no walk's prize exceeds: a number of nodes, where there are no prizes. Source: docs/search.md, "Bounds".
 
-    Of edges it is the number of the cheapest ones in reach that the budget pays for; a plan has a tighter one.
+    Of edges it is what those in reach are worth that the budget pays for, the best for their cost first; a plan may
+    have a tighter one.
 
     Args:
         world: where to walk.

@@ -89,6 +89,18 @@ TEST(ExploreEdges, KeepsToItsBudgetAndComesHome) {
   }
 }
 
+TEST(ExploreEdges, MayHaveAnyLabels) {
+  GraphMap map;
+  set_edges(map, 4,
+            {.edges = {{0, 1}, {0, 2}, {0, 3}, {1, 0}, {2, 0}, {3, 0}}, .labels = {"x", "x#2", "x", "", "", "y"}},
+            EdgeKind::kDirected);
+  map.blocked.resize(4);
+  const World world("labels", std::move(map));
+  const Answer answer =
+      answer_task(world, Task(world, 0, kNoLimit), {.reveal = Reveal::parse("edges"), .cover = Cover::kEdges});
+  EXPECT_EQ(answer.edges->walked, 6);
+}
+
 TEST(ExploreEdges, OfKnownMapsArePlanned) {
   Rng rng(3);
   const World world = random_world(rng, 6, 6, EdgeKind::kUndirected, 1);

@@ -240,6 +240,33 @@ TEST(LiveCells, GiveUpGoalsThatFailThreeTimes) {
   EXPECT_EQ(report.steps, 3);
 }
 
+TEST(LiveCells, GoHomeThoughAGoalNearItWasGivenUp) {
+  GridMap map{.rows = 3, .cols = 30, .blocked = std::vector<bool>(90, true)};
+  for (int col = 1; col < 29; ++col) map.blocked[map.node({1, col})] = false;
+  const Cell start = {1, 12};
+  Robot robot(map, start, 2);
+  LiveExploration exploration({.end_at_start = true, .policy = "nearest"});
+  int failures = 0;
+  LiveStep step;
+  for (int report = 0; report < 100; ++report) {
+    LiveObservation seen{.at = robot.point(), .cells = robot.look()};
+    if (step.kind == LiveStep::Kind::kGoto) {
+      const Cell goal = Robot::cell_at(step.way.back());
+      seen.failed = goal.col < start.col;  // there it never gets
+      failures += seen.failed;
+      if (!seen.failed) robot.stand(goal);
+      seen.at = robot.point();
+      seen.cells = robot.look();
+    }
+    exploration.observe(seen);
+    step = exploration.next();
+    if (step.kind == LiveStep::Kind::kDone) break;
+  }
+  EXPECT_EQ(failures, 3);
+  EXPECT_EQ(robot.at(), start);
+  EXPECT_EQ(step.done, LiveStep::Done::kUnreachable);
+}
+
 TEST(LiveCells, DoNotGoHomeForEverWhereTheWayFails) {
   Robot robot = in_corridor(20);
   LiveExploration exploration({.end_at_start = true, .policy = "nearest"});

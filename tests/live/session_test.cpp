@@ -97,7 +97,9 @@ TEST(LiveSession, SaysWhatIsWrongAndChangesNothing) {
   EXPECT_THAT(session.answer(R"({"id":")" + std::string(300, 'x') + R"(","state":"a"})"), HasSubstr("256 bytes"));
   EXPECT_TRUE(session.refused());
   EXPECT_EQ(session.answer(R"({"id":1,"open":{}})"), R"({"id":1,"ok":true,"protocol":1})") << "it still can be opened";
-  EXPECT_THAT(session.answer(R"({"id":2,"open":{}})"), HasSubstr("has begun"));
+  EXPECT_EQ(session.answer(R"({"id":2,"open":{"cover":"edges"}})"), R"({"id":2,"ok":true,"protocol":1})");
+  session.answer(R"({"state":"a"})");
+  EXPECT_THAT(session.answer(R"({"id":3,"open":{}})"), HasSubstr("has begun"));
 }
 
 TEST(LiveSession, ClosesWithAReport) {

@@ -220,6 +220,7 @@ def test_python_goes_through_cells_as_the_program(tmp_path):
         live.save(tmp_path / name)
         assert graphdrl.World.from_file(tmp_path / name).node_count in (4, 18)
     live.save(tmp_path / "walk.html")
+    assert live.world().shape == (3, 6) and live.plan().visited == 3
     again = graphdrl.LiveExploration(transcript=tmp_path / "t.jsonl", resume=True)
     assert again.report() == live.report() and again.next() == live.next()
 

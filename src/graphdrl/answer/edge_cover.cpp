@@ -362,7 +362,6 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
   } else if (auto exact = planner.exact()) {
     cover.walk = *std::move(exact);
     cover.policy = "exact";
-    cover.bound = planner.prize_of(cover.walk);
   } else {
     Rng rng(kNoiseSeed);
     std::vector<EdgeWalk> walks = {planner.greedy({}, 0, rng)};
@@ -383,6 +382,9 @@ EdgeCover cover_edges(const World& world, const Task& task, std::optional<double
     if (edge >= 0) edge = numbers[edge];
   }
   count_edges(world, cover);
+  // What is searched by states is the best; sums may differ by the order of rounding.
+  cover.bound = cover.policy == "exact" ? cover.prize : std::max(cover.bound, cover.prize);
+  cover.all_cheapest = cover.all_cheapest || (cover.policy == "exact" && cover.walked == cover.edges);
   return cover;
 }
 
@@ -390,7 +392,7 @@ EdgeCover judge_edges(const World& world, const Task& task, std::optional<double
   const auto [graph, numbers] = walkable_edges(world);
   EdgeCover cover{.walk = std::move(walk), .reset_cost = reset_cost};
   count_edges(world, cover);
-  cover.bound = EdgePlanner(world, task, graph, reset_cost).bound();
+  cover.bound = std::max(cover.prize, EdgePlanner(world, task, graph, reset_cost).bound());
   if (cover.walked < cover.edges) return cover;
   if (const auto all = walk_over_all(world, task, graph, reset_cost)) compare_with_all(*all, cover);
   return cover;

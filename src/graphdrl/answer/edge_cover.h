@@ -37,8 +37,8 @@ struct EdgeCover {
   std::string policy = {};                // what made it, where that was none of plan_nodes
   std::optional<double> reset_cost = {};  // of jumps to the start that walks may make
 
-  // Whether no walk has a higher prize, or if it walks all, none is known to be cheaper.
-  bool optimal() const { return all_cheapest || prize >= bound; }
+  // Whether no walk has a higher prize, or one as high for less where that is all.
+  bool optimal() const { return walked == edges ? all_cheapest : prize >= bound; }
   double percent(double part) const { return total_prize == 0 ? 100.0 : 100.0 * part / total_prize; }  // of a prize
 };
 

@@ -17,7 +17,7 @@ struct CheckOptions {
   std::string map;
   std::string walk;
   AskedText asked;
-  CoverText cover;
+  CoverText cover = {.cover = ""};  // what the plan says
   MapOptions reading;
   std::vector<std::string> out;
   bool json = false;
@@ -32,9 +32,10 @@ void check(const CheckOptions& options) {
   const GivenTask& given = world.given();
   if (!asked.budget && given.budget) asked.budget = Budget(*given.budget);
   if (!asked.end && given.end != kNoNode) asked.end = End::at(given.end);
-  const bool edges = parse_cover(options.cover.cover) == Cover::kEdges;
+  std::optional<Cover> cover;
+  if (!options.cover.cover.empty()) cover = parse_cover(options.cover.cover);
   Answer answer =
-      read_plan(world, options.walk, {.task = asked, .edges = edges, .reset_cost = options.cover.reset_cost});
+      read_plan(world, options.walk, {.task = asked, .cover = cover, .reset_cost = options.cover.reset_cost});
   check_walk(answer, options.walk);
   judge(answer);
   std::vector<std::function<void()>> outputs;

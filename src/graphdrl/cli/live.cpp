@@ -84,8 +84,10 @@ LiveOptions options_of(const LiveRequest& request) {
 void add_live_options(CLI::App& command, LiveArguments& live) {
   CLI::Option* const flag = command.add_flag(
       "--live", live.live,
-      "No map: a client says on standard input where it is and which moves it has there, a JSON object a line, and is "
-      "told on standard output what to do next (docs/live.md)");
+      "No map: a client says on standard input where it is, and which moves it has there or which cells it sees, a "
+      "JSON "
+      "object a line, and is told on standard output what to do next (docs/live.md). The default policy of moves is "
+      "novelty; cells seen count, and steps lead to eight others, unless --score and --connectivity say otherwise");
   const auto only_live = [&](CLI::Option* option) { option->needs(flag)->group(kWithLive); };
   CLI::Option* const transcript =
       add_text_option(command, "--transcript", live.transcript, "FILE", "Write down each message with its answer");

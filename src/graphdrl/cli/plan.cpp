@@ -58,13 +58,12 @@ std::string as_comments(std::string_view text) {
 
 std::string format_plan(const Answer& answer, const PlanOptions& options) {
   const World& world = answer.world;
-  const std::vector<NodeId>& walk = answer.plan.walk;
+  const std::vector<NodeId>& walk = answer.edges ? answer.edges->walk.nodes : answer.plan.walk;  // with loops
   std::string text = fmt::format("{}, {} from {}", world.name(), answer.policy, name_of(world, walk.front()));
   if (!answer.task.ends_anywhere()) text += fmt::format(" to {}", name_of(world, answer.task.end()));
   for (const std::string& line : plan_summary(answer)) text += '\n' + line;
   text += '\n';
-  const std::string length =
-      fmt::format("walk of {} steps", answer.edges ? answer.edges->walk.edges.size() : walk.size() - 1);
+  const std::string length = fmt::format("walk of {} steps", walk.size() - 1);
   if (options.walk) return as_comments(text + length + '\n') + format_walk(world, walk);
   Screen screen = screen_of(stdout);
   if (!world.has_cells() && std::ssize(walk) <= screen.columns) {

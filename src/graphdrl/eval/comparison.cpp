@@ -138,6 +138,11 @@ void check_options(const std::vector<World>& worlds, const ComparisonOptions& op
   if (options.until_covered && ((options.reveal.all() && !options.counts_edges()) || options.budget)) {
     throw Error({.what = "until covered goes with maps that are not known, and without a budget"});
   }
+  if (options.counts_edges() && options.budget && !options.budget->cost()) {
+    throw Error({.what = "a multiple is of nodes, and edges count here",
+                 .expected = "a budget in units of cost",
+                 .got = in_quotes(options.budget->text())});
+  }
   if (!options.believed.empty() && (options.reveal.all() || options.believed.size() != worlds.size())) {
     throw Error({.what = "old maps go with maps that are not known, one for each"});
   }
@@ -374,19 +379,20 @@ Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& op
     for (std::size_t map = 0; map < arenas.size(); ++map) {
       const Arena& arena = arenas[map];
       const std::vector<double>& values = results[policy][map];
-      comparison.rows.push_back(
-          {.map = arena.world.name(),
-           .policy = label,
-           .valid_nodes = arena.world.valid_count(),
-           .has_prizes = arena.world.has_prizes(),
-           .given = arena.world.given(),
-           .budget = arena.task.budget(),
-           .episodes = static_cast<int>(arena.starts.size()),
-           .coverage = values.empty() ? std::nullopt : std::optional(summarise(values)),
-           .optimum = arena.optimum,
-           .paper = arena.task.ends_anywhere() ? paper_result(arena.world.name(), arena.task.budget()) : std::nullopt,
-           .known = {},
-           .price = {}});
+      comparison.rows.push_back({.map = arena.world.name(),
+                                 .policy = label,
+                                 .valid_nodes = arena.world.valid_count(),
+                                 .has_prizes = arena.world.has_prizes(),
+                                 .given = arena.world.given(),
+                                 .budget = arena.task.budget(),
+                                 .episodes = static_cast<int>(arena.starts.size()),
+                                 .coverage = values.empty() ? std::nullopt : std::optional(summarise(values)),
+                                 .optimum = arena.optimum,
+                                 .paper = arena.task.ends_anywhere() && !options.counts_edges()
+                                              ? paper_result(arena.world.name(), arena.task.budget())
+                                              : std::nullopt,
+                                 .known = {},
+                                 .price = {}});
       if (arena.known.empty() || values.empty()) continue;
       std::vector<double> prices;
       for (std::size_t i = 0; i < values.size(); ++i) {

@@ -75,7 +75,7 @@ std::string by_share(const std::vector<ComparisonRow>& rows, const IsSo& is_so, 
 
 std::string what_is_measured(const Comparison& comparison) {
   if (comparison.options.counts_edges()) {
-    return comparison.options.until_covered ? "Cost until no edge is left" : "Edges walked, in %";
+    return comparison.options.until_covered ? "Cost until no edge is left" : "Edges walked, or their prizes, in %";
   }
   if (comparison.options.until_covered) return "Cost until nothing is left that is known";
   return by_share(comparison.rows, [](const ComparisonRow& row) { return row.has_prizes; },

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <boost/graph/adjacency_list.hpp>
-#include <boost/graph/maximum_weighted_matching.hpp>
 #include <boost/graph/successive_shortest_path_nonnegative_weights.hpp>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/graph/perfect_matching.h"
 #include "graphdrl/graph/search.h"
 
 namespace graphdrl {
@@ -266,26 +266,6 @@ class DirectedPostman {
   CheapestEdges cheapest_;
 };
 
-// The partner of each of an even number of things, so that all pairs together cost least. costs: between any two.
-std::vector<std::size_t> cheapest_pairs(const std::vector<std::vector<std::int64_t>>& costs) {
-  using Weighted = boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS, boost::no_property,
-                                         boost::property<boost::edge_weight_t, std::int64_t>>;
-  const std::size_t all = costs.size();
-  std::int64_t dearest = 0;
-  for (const auto& row : costs) dearest = std::max(dearest, *std::ranges::max_element(row));
-  // The most weight with these weights is the most pairs, and of those the least cost. The library halves them.
-  Weighted pairs(all);
-  const std::int64_t pair_weight = (dearest + 1) * static_cast<std::int64_t>(all + 1);
-  for (std::size_t i = 0; i < all; ++i) {
-    for (std::size_t j = i + 1; j < all; ++j) {
-      boost::add_edge(i, j, Weighted::edge_property_type(4 * (pair_weight - costs[i][j])), pairs);
-    }
-  }
-  std::vector<boost::graph_traits<Weighted>::vertex_descriptor> mate(all);
-  boost::maximum_weighted_matching(pairs, mate.data());
-  return {mate.begin(), mate.end()};
-}
-
 std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& simple, NodeId start, NodeId end) {
   const NodeId count = simple.node_count();
   std::vector<bool> odd(count);
@@ -328,13 +308,13 @@ std::optional<EdgeWalk> undirected_walk(const Multigraph& graph, const Graph& si
     });
     if (reached < ends.size()) return std::nullopt;
   }
-  const std::vector<std::size_t> mate = cheapest_pairs(costs);
+  const std::vector<int> mate = cheapest_pairs(costs);
   const CheapestEdges cheapest(graph, simple);
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (mate[i] >= all) return std::nullopt;
-    if (mate[i] == anywhere || mate[i] < i) continue;
+    const auto partner = static_cast<std::size_t>(mate[i]);
+    if (partner == anywhere || partner < i) continue;
     std::vector<NodeId> way = {ends[i]};
-    searches[i].append_path_to(ends[mate[i]], way);
+    searches[i].append_path_to(ends[partner], way);
     for (std::size_t step = 1; step < way.size(); ++step) {
       parts.push_back({way[step - 1], way[step], cheapest.edge(way[step - 1], way[step])});
     }

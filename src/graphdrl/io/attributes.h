@@ -1,7 +1,6 @@
 // What attributes of nodes and edges mean, by the names that programs give them.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -47,7 +46,6 @@ class AmountNames {
   bool knows(std::string_view name) const { return is_name_of(name, names_); }
   // The one that counts, the last of those with the best name; null where there is none.
   const Attribute* best(std::span<const Attribute> attributes);
-  bool used() const { return std::ranges::find(used_, true) != used_.end(); }
   // Throws Error where the one asked for was never met. owner: "edge" or "node".
   void check(const std::string& owner, const std::string& place) const;
   // "weight and length" where more than one of them was used; else empty.

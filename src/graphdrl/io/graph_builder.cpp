@@ -52,7 +52,7 @@ std::vector<std::string> labels_from_one(NodeId count) {
 GraphBuilder::GraphBuilder(const MapOptions& options, std::function<std::string()> place, std::ptrdiff_t text_bytes)
     : costs_(options.cost_attribute, kCostNames),
       prizes_(options.prize_attribute, kPrizeNames),
-      edge_prizes_(options.prize_attribute, kEdgePrizeNames),
+      edge_prizes_(options.prize_attribute == kNoAttribute ? options.prize_attribute : "", kEdgePrizeNames),
       note_(options.note),
       place_(std::move(place)),
       items_left_(text_bytes < 0 ? std::numeric_limits<std::int64_t>::max() : kMostItemsPerByte * text_bytes) {}
@@ -232,7 +232,7 @@ GraphBuilder::EdgeList GraphBuilder::take_edges() {
 
 GraphMap GraphBuilder::build() {
   costs_.check("edge", place_());
-  if (!edge_prizes_.used()) prizes_.check("node", place_());
+  prizes_.check("node", place_());
   drop_left_out();
   const NodeId count = ids_.count();
   blocked_.resize(count);

@@ -344,8 +344,11 @@ void CellGraph::visit(NodeId node) {
 
 void CellGraph::failed(NodeId goal) {
   change();
-  auto one = std::ranges::find_if(
-      failures_, [&](const Failure& before) { return is_near(cells_[before.goal], cells_[goal], kFailsAround); });
+  // Goals at the frontier that are near each other count as one.
+  const bool way_home = !is_left(goal);
+  auto one = std::ranges::find_if(failures_, [&](const Failure& before) {
+    return before.goal == goal || (!way_home && is_near(cells_[before.goal], cells_[goal], kFailsAround));
+  });
   if (one == failures_.end()) one = failures_.insert(one, Failure{.goal = goal, .failures = 0, .waiting = true});
   ++one->failures;
   one->waiting = true;
@@ -353,9 +356,8 @@ void CellGraph::failed(NodeId goal) {
 }
 
 bool CellGraph::given_up(NodeId goal) const {
-  return std::ranges::any_of(failures_, [&](const Failure& one) {
-    return one.failures >= kMostFailures && is_near(cells_[goal], cells_[one.goal], kFailsAround);
-  });
+  return std::ranges::any_of(failures_,
+                             [&](const Failure& one) { return one.failures >= kMostFailures && one.goal == goal; });
 }
 
 bool CellGraph::retry() {

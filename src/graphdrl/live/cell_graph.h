@@ -35,7 +35,7 @@ class CellGraph {
   // Of the rectangle around all cells known.
   static constexpr std::int64_t kMostCells = std::int64_t{1} << 26;
   // A goal that failed takes with it those so many cells around: they wait, or are given up.
-  static constexpr int kFailsAround = 5;
+  static constexpr int kFailsAround = 2;
   static constexpr int kMostFailures = 3;  // then a goal is given up
 
   CellGraph(int connectivity, Score score);  // connectivity: 4 or 8
@@ -79,7 +79,7 @@ class CellGraph {
 
   // A goal could not be reached: those around it wait.
   void failed(NodeId goal);
-  // Whether a goal, or one near it, has failed kMostFailures times.
+  // Whether this very goal has failed kMostFailures times.
   bool given_up(NodeId goal) const;
   // Those that wait can be tried again. False where there are none.
   bool retry();

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -40,7 +40,8 @@ class WorldClient {
       : directed_(world.open().directed()),
         edges_(walkable_edges(world)),
         moves_(world.node_count()),
-        walked_(edges_.graph.edges.size()) {
+        walked_(edges_.graph.edges.size()),
+        news_(world.node_count()) {
     const std::vector<Edge>& edges = edges_.graph.edges;
     const Multigraph* const all = world.multigraph();
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -48,8 +49,7 @@ class WorldClient {
       const bool named = directed_ && all != nullptr;
       const std::string label = named ? all->label(static_cast<std::size_t>(edges_.numbers[i])) : "";
       add(edges[i].a, i, label);
-      const bool back = !directed_ || edges_.graph.leads_back(i);
-      if (back && edges[i].a != edges[i].b) add(edges[i].b, i, label);
+      if (leads_back(i) && edges[i].a != edges[i].b) add(edges[i].b, i, label);
     }
     // The order of a file says nothing.
     Rng rng(seed);
@@ -72,14 +72,17 @@ class WorldClient {
     }
     return moves;
   }
+  // Whether the moves of a node have to be told again: one was walked from its other end.
+  bool has_news(NodeId node) const { return news_[node]; }
 
-  // Does a move; gives where it leads.
-  NodeId walk(NodeId node, const std::string& name, EdgeWalk& walk) {
-    const auto move = std::ranges::find(moves_[node], name, &Move::name);
-    walked_[move->edge] = true;
-    walk.edges.push_back(edges_.numbers[move->edge]);
-    walk.cost += edges_.graph.edges[move->edge].cost;
-    return other_end(move->edge, node);
+  // Does a move. Gives where it leads, and what it costs.
+  std::pair<NodeId, double> walk(NodeId node, const std::string& name, EdgeWalk& walk) {
+    const std::size_t edge = edge_of_.at({node, name});
+    const NodeId to = other_end(edge, node);
+    news_[to] = leads_back(edge) && !walked_[edge];
+    walked_[edge] = true;
+    walk.edges.push_back(edges_.numbers[edge]);
+    return {to, edges_.graph.edges[edge].cost};
   }
 
  private:
@@ -88,11 +91,13 @@ class WorldClient {
     std::size_t edge;
   };
 
+  // By its label, unless another move of the node has it.
   void add(NodeId node, std::size_t edge, const std::string& label) {
-    const auto is_it = [&](const Move& one) { return one.name == label; };
-    const bool unclear = label.empty() || std::ranges::any_of(moves_[node], is_it);
-    moves_[node].push_back({unclear ? fmt::format("{}#{}", label, edge) : label, edge});
+    std::string name = label.empty() ? fmt::format("#{}", edge) : label;
+    while (!edge_of_.emplace(std::pair(node, name), edge).second) name += fmt::format("#{}", edge);
+    moves_[node].push_back({std::move(name), edge});
   }
+  bool leads_back(std::size_t edge) const { return !directed_ || edges_.graph.leads_back(edge); }
   NodeId other_end(std::size_t edge, NodeId node) const {
     const Edge& both = edges_.graph.edges[edge];
     return both.a == node ? both.b : both.a;
@@ -101,7 +106,9 @@ class WorldClient {
   bool directed_;
   WalkableEdges edges_;
   std::vector<std::vector<Move>> moves_;  // [N]
-  std::vector<bool> walked_;              // [edges], from either end
+  std::map<std::pair<NodeId, std::string>, std::size_t> edge_of_;
+  std::vector<bool> walked_;  // [edges], from either end
+  std::vector<bool> news_;    // [N]
 };
 
 Answer explore_edges(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
@@ -119,6 +126,7 @@ Answer explore_edges(const World& world, const Task& task, const PlanRequest& re
   EdgeWalk walk{.nodes = {task.start()}};
   Discovered discovered;
   std::vector<bool> seen(world.node_count());
+  std::vector<bool> visited(world.node_count());
   const auto see = [&](NodeId node) {
     if (!seen[node]) discovered.nodes.push_back(node);
     seen[node] = true;
@@ -126,25 +134,30 @@ Answer explore_edges(const World& world, const Task& task, const PlanRequest& re
   std::optional<double> cost;
   while (true) {
     const NodeId here = walk.nodes.back();
-    std::vector<OfferedMove> moves = client.moves(here);
-    see(here);
-    for (const OfferedMove& move : moves) see(static_cast<NodeId>(std::stoll(*move.to)));
+    LiveObservation told{.state = WorldClient::name_of(here), .cost = cost};
+    if (!visited[here] || client.has_news(here)) told.moves = client.moves(here);
+    if (!visited[here]) {
+      see(here);
+      for (const OfferedMove& move : *told.moves) see(static_cast<NodeId>(std::stoll(*move.to)));
+    }
+    visited[here] = true;
     const auto count = static_cast<int>(discovered.nodes.size());
     const bool stayed = walk.nodes.size() > 1 && here == walk.nodes[walk.nodes.size() - 2];  // a loop
     if (!stayed) discovered.after_step.push_back(count);
-    exploration.observe({.state = WorldClient::name_of(here), .cost = cost, .moves = std::move(moves)});
+    exploration.observe(told);
     if (clock.passed()) exploration.end();
     const LiveStep& step = exploration.next();
     if (step.kind == LiveStep::Kind::kDone) break;
-    const double before = walk.cost;
     if (step.kind == LiveStep::Kind::kReset) {
       walk.edges.push_back(EdgeWalk::kResetEdge);
       walk.nodes.push_back(task.start());
-      walk.cost += *request.reset_cost;
+      cost = request.reset_cost;
     } else {
-      walk.nodes.push_back(client.walk(here, step.move, walk));
+      const auto [to, paid] = client.walk(here, step.move, walk);
+      walk.nodes.push_back(to);
+      cost = paid;
     }
-    cost = walk.cost - before;
+    walk.cost += *cost;
   }
   Answer answer = edge_answer(world, task, judge_edges(world, task, request.reset_cost, std::move(walk)),
                               exploration.options().policy);

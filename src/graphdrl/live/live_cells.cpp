@@ -55,8 +55,14 @@ double LiveCells::cost_between(NodeId from, NodeId to) const {
 // How it has come to a node: along what it was told, else the cheapest way known, else straight.
 std::vector<NodeId> LiveCells::way_to(NodeId node, const std::vector<NodeId>& told) {
   if (node == here_) return {};
-  const auto met = std::ranges::find(told, node);
-  if (met != told.end()) return {told.begin(), met + 1};
+  if (const auto met = std::ranges::find(told, node); met != told.end()) {
+    bool is_there = true;  // what was told is still a way
+    for (auto next = told.begin(); next <= met; ++next) {
+      const NodeId before = next == told.begin() ? here_ : *(next - 1);
+      is_there = is_there && graph_.view().open().index_of(before, *next) >= 0;
+    }
+    if (is_there) return {told.begin(), met + 1};
+  }
   bool found = false;
   if (here_ != kNoNode) {
     search_.run(graph_.view().open(), here_, kNoLimit, [&](NodeId next, double) {

@@ -303,7 +303,7 @@ LiveSession::LiveSession(LiveOptions defaults, Record record)
     : defaults_(std::move(defaults)), record_(std::move(record)) {}
 
 void LiveSession::open(const json& options) {
-  if (exploration_) throw FieldError("open", {.what = "the exploration has begun"});
+  if (exploration_ && exploration_->observed()) throw FieldError("open", {.what = "the exploration has begun"});
   exploration_.emplace(parse_live_options(options, defaults_));
 }
 

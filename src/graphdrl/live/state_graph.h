@@ -120,10 +120,10 @@ class StateGraph {
     NodeId node;
     double prize = 1;
     bool visited = false;
-    int untried = 0;             // moves worth trying
-    int shown = 0;               // of them, nodes
-    std::size_t next_shown = 0;  // all before it are shown
-    std::size_t offered = 0;     // a hash of what was offered last
+    int untried = 0;                          // moves worth trying
+    int shown = 0;                            // of them, nodes
+    std::size_t next_shown = 0;               // all before it are shown
+    std::optional<std::size_t> offered = {};  // a hash of what was offered last
     std::vector<StateMove> moves = {};
   };
 

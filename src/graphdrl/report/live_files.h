@@ -10,7 +10,8 @@ namespace graphdrl {
 // Throws Error unless the file can be written and has an ending that write_live() knows.
 void check_live_file(const std::string& file);
 
-// The map discovered (.graphml, .dot, .json), else the walk as write_plan() writes it. Throws Error.
+// The map discovered (.graphml, .gml, .dot, .json; of cells .pgm, .map, .txt, too), else the walk as write_plan()
+// writes it. Throws Error.
 void write_live(const LiveExploration& exploration, const std::string& file);
 
 }  // namespace graphdrl

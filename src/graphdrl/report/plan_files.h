@@ -43,7 +43,7 @@ std::string plan_file_endings();
 // where these have a cost.
 struct AskedOfPlan {
   Asked task = {};
-  bool edges = false;
+  std::optional<Cover> cover = {};        // the default is what the document says, else nodes
   std::optional<double> reset_cost = {};  // where edges count; the default is the document's, else there are none
 };
 Answer read_plan(const World& world, const std::string& file, const AskedOfPlan& asked = {});

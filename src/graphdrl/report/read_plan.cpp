@@ -270,12 +270,21 @@ Answer parse_plan(const World& world, const std::string& text, const std::string
     }
   };
   const auto answered = [&] {
-    if (asked.edges || (document.is_object() && document.value("cover", nlohmann::json()) == "edges")) {
+    const bool says_edges = document.is_object() && document.value("cover", nlohmann::json()) == "edges";
+    if (asked.cover.value_or(says_edges ? Cover::kEdges : Cover::kNodes) == Cover::kEdges) {
       const auto reset_cost = asked.reset_cost ? asked.reset_cost : number_at(document, "reset_cost");
+      if (reset_cost && !world.open().directed()) {
+        throw Error({.what = "resets go with edges that lead one way", .where = file});
+      }
+      if (reset_cost && !(*reset_cost >= 0)) {
+        throw Error(
+            {.what = "bad reset_cost", .expected = "a number from 0 up", .got = decimal(*reset_cost), .where = file});
+      }
       EdgeWalk edges = edge_walk(world, std::move(walk), document, reset_cost, file);
       const Task within = task(edges.cost);
       return edge_answer(world, within, judge_edges(world, within, reset_cost, std::move(edges)), file);
     }
+    if (asked.reset_cost) throw Error({.what = "resets go with --cover edges"});
     check_steps(world, walk, file);
     Plan plan = plan_of_walk(Task(world, start, kNoLimit), std::move(walk));
     Task within = task(plan.cost);
