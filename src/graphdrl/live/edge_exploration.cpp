@@ -111,20 +111,19 @@ class WorldClient {
   std::vector<bool> news_;    // [N]
 };
 
-Answer explore_edges(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
-  check_request(world, task, request);
-  const Stopwatch watch;
-  LiveExploration exploration({.cover = Cover::kEdges,
-                               .directed = world.open().directed(),
-                               .budget = task.has_budget() ? task.budget() : kNoLimit,
-                               .end_at_start = !task.ends_anywhere(),
-                               .reset_cost = request.reset_cost,
-                               .policy = request.policy,
-                               .think_s = request.think_s,
-                               .seed = request.seed});
+// A walk, and how the nodes became known.
+struct Explored {
+  EdgeWalk walk;
+  Discovered discovered = {};
+};
+
+// Does what the exploration says until there is nothing to do.
+Explored walk_edges(const World& world, const Task& task, const PlanRequest& request, LiveExploration& exploration,
+                    const Clock& clock) {
   WorldClient client(world, request.seed);
-  EdgeWalk walk{.nodes = {task.start()}};
-  Discovered discovered;
+  Explored explored{.walk = {.nodes = {task.start()}}};
+  EdgeWalk& walk = explored.walk;
+  Discovered& discovered = explored.discovered;
   std::vector<bool> seen(world.node_count());
   std::vector<bool> visited(world.node_count());
   const auto see = [&](NodeId node) {
@@ -159,19 +158,37 @@ Answer explore_edges(const World& world, const Task& task, const PlanRequest& re
     }
     walk.cost += *cost;
   }
+  return explored;
+}
+
+// By a walk that knows the map.
+Plan plan_known_edges(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
+  const Clock thinks = clock.at_most(*request.price_s);
+  const EdgeCover known =
+      cover_edges(world, task, request.reset_cost, [&](const World& halved, const Task& halved_task) {
+        return make_plan(halved, halved_task, {.seed = request.seed}, thinks).plan;
+      });
+  return Plan{.walk = known.walk.nodes, .prize = known.prize, .cost = known.walk.cost};
+}
+
+Answer explore_edges(const World& world, const Task& task, const PlanRequest& request, const Clock& clock) {
+  check_request(world, task, request);
+  const Stopwatch watch;
+  LiveExploration exploration({.cover = Cover::kEdges,
+                               .directed = world.open().directed(),
+                               .budget = task.has_budget() ? task.budget() : kNoLimit,
+                               .end_at_start = !task.ends_anywhere(),
+                               .reset_cost = request.reset_cost,
+                               .policy = request.policy,
+                               .think_s = request.think_s,
+                               .seed = request.seed});
+  auto [walk, discovered] = walk_edges(world, task, request, exploration, clock);
   Answer answer = edge_answer(world, task, judge_edges(world, task, request.reset_cost, std::move(walk)),
                               exploration.options().policy);
   answer.reveal = request.reveal;
   answer.discovered = std::move(discovered);
   answer.until_covered = request.until_covered || answer.until_covered;
-  if (request.price_s) {
-    const Clock thinks = clock.at_most(*request.price_s);
-    const EdgeCover known =
-        cover_edges(world, task, request.reset_cost, [&](const World& halved, const Task& halved_task) {
-          return make_plan(halved, halved_task, {.seed = request.seed}, thinks).plan;
-        });
-    answer.known = Plan{.walk = known.walk.nodes, .prize = known.prize, .cost = known.walk.cost};
-  }
+  if (request.price_s) answer.known = plan_known_edges(world, task, request, clock);
   answer.elapsed_s = watch.seconds();
   return answer;
 }
