@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import os
 import pickle
 import random
 
@@ -11,7 +10,7 @@ import pytest
 
 import graphdrl
 
-ROUNDS = int(os.environ.get("GRAPHDRL_ROUNDS", "15"))  # 100 by hand: two minutes
+ROUNDS = 100
 
 
 def planned(run, tmp_path, graph, *arguments):
