@@ -10,10 +10,6 @@
 namespace graphdrl {
 namespace {
 
-bool is_near(const Cell& one, const Cell& other, int most) {
-  return std::abs(one.row - other.row) <= most && std::abs(one.col - other.col) <= most;
-}
-
 // Whether a patch says something of one of its cells: likely to be blocked or free.
 bool says_free(std::int8_t value) {
   return value >= 0 && value <= CellGraph::kFree;
@@ -249,10 +245,20 @@ bool CellGraph::is_left(NodeId node) const {
   return !visited_[node] && !blocked(node) && (score_ == Score::kVisited || view().is_frontier(node));
 }
 
+template <typename Holds>
+const CellGraph::Failure* CellGraph::failure_near(const Cell& cell, const Holds& holds) const {
+  for (int row = cell.row - kFailsAround; row <= cell.row + kFailsAround && !failures_.empty(); ++row) {
+    auto one = failures_.lower_bound({row, cell.col - kFailsAround});
+    for (; one != failures_.end() && one->first <= std::pair(row, cell.col + kFailsAround); ++one) {
+      if (holds(one->second)) return &one->second;
+    }
+  }
+  return nullptr;
+}
+
 bool CellGraph::is_put_off(const Cell& cell) const {
-  return std::ranges::any_of(failures_, [&](const Failure& one) {
-    return (one.waiting || one.failures >= kMostFailures) && is_near(cell, cells_[one.goal], kFailsAround);
-  });
+  const auto holds = [](const Failure& one) { return one.waiting || one.failures >= kMostFailures; };
+  return failure_near(cell, holds) != nullptr;
 }
 
 void CellGraph::settle_ground(NodeId node) {
@@ -331,7 +337,7 @@ NodeId CellGraph::stand_in(const Cell& cell) {
 }
 
 void CellGraph::visit(NodeId node) {
-  if (std::erase_if(failures_, [&](const Failure& one) { return one.goal == node; }) > 0) {
+  if (failures_.erase({cells_[node].row, cells_[node].col}) > 0) {
     change();
     settle_ground_around(cells_[node]);
   }
@@ -345,32 +351,33 @@ void CellGraph::visit(NodeId node) {
 void CellGraph::failed(NodeId goal) {
   change();
   // Goals at the frontier that are near each other count as one.
-  const bool way_home = !is_left(goal);
-  auto one = std::ranges::find_if(failures_, [&](const Failure& before) {
-    return before.goal == goal || (!way_home && is_near(cells_[before.goal], cells_[goal], kFailsAround));
-  });
-  if (one == failures_.end()) one = failures_.insert(one, Failure{.goal = goal, .failures = 0, .waiting = true});
-  ++one->failures;
-  one->waiting = true;
-  settle_ground_around(cells_[one->goal]);
+  const Cell& cell = cells_[goal];
+  const Failure* const before =
+      failure_near(cell, [&](const Failure& one) { return one.goal == goal || (is_left(goal) && is_left(one.goal)); });
+  const Cell& counted = before == nullptr ? cell : cells_[before->goal];
+  Failure& one = failures_[{counted.row, counted.col}];
+  if (before == nullptr) one.goal = goal;
+  ++one.failures;
+  one.waiting = true;
+  settle_ground_around(counted);
 }
 
 bool CellGraph::given_up(NodeId goal) const {
-  return std::ranges::any_of(failures_,
-                             [&](const Failure& one) { return one.failures >= kMostFailures && one.goal == goal; });
+  const auto found = failures_.find({cells_[goal].row, cells_[goal].col});
+  return found != failures_.end() && found->second.failures >= kMostFailures;
 }
 
 bool CellGraph::retry() {
   bool any = false;
   changed_now_ = false;  // a policy that has seen all this and stopped must think again
-  for (Failure& one : failures_) {
+  for (auto& [cell, one] : failures_) {
     if (!one.waiting || one.failures >= kMostFailures) continue;
     one.waiting = false;
     any = true;
   }
   if (!any) return false;
   change();
-  for (const Failure& one : failures_) settle_ground_around(cells_[one.goal]);
+  for (const auto& [cell, one] : failures_) settle_ground_around(cells_[one.goal]);
   return true;
 }
 

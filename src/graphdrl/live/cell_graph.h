@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "graphdrl/env/discovery.h"
@@ -84,11 +86,13 @@ class CellGraph {
   // Those that wait can be tried again. False where there are none.
   bool retry();
   struct Failure {
-    NodeId goal;
-    int failures;
-    bool waiting;
+    NodeId goal = kNoNode;
+    int failures = 0;
+    bool waiting = false;
   };
-  const std::vector<Failure>& failures() const { return failures_; }  // of goals that were not reached since
+  // Of goals that were not reached since, by row and column.
+  using Failures = std::map<std::pair<int, int>, Failure>;
+  const Failures& failures() const { return failures_; }
 
   // The rectangle around all cells known; those that are not known to be free are blocked.
   GridMap map() const;
@@ -125,6 +129,9 @@ class CellGraph {
   bool joins(const Cell& from, const Cell& step) const;
   bool has_unknown_beside(const Cell& cell) const;
   bool is_left(NodeId node) const;
+  // The first failure near a cell that it holds for; null where there is none.
+  template <typename Holds>
+  const Failure* failure_near(const Cell& cell, const Holds& holds) const;
   bool is_put_off(const Cell& cell) const;
   void settle_ground(NodeId node);
   void settle_ground_around(const Cell& cell);
@@ -140,7 +147,7 @@ class CellGraph {
   std::vector<Cell> cells_;    // [N]
   std::vector<bool> visited_;  // [N]
   NodeSet ground_;
-  std::vector<Failure> failures_;
+  Failures failures_;
   int visited_count_ = 0;
   int free_count_ = 0;
   std::int64_t changes_ = 0;

@@ -125,7 +125,7 @@ void LiveCells::add_to(LiveReport& report) const {
   cells.visited = graph_.visited_count();
   cells.left = graph_.left_count();
   cells.changed = graph_.changes();
-  for (const CellGraph::Failure& one : graph_.failures()) {
+  for (const auto& [cell, one] : graph_.failures()) {
     cells.failed.push_back({.goal = graph_.centre(one.goal), .failures = one.failures});
   }
 }
