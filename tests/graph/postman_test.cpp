@@ -158,6 +158,12 @@ TEST(Postman, WalksGridsOfAnySize) {
   }
 }
 
+TEST(Postman, StaysWhereThereAreNoEdges) {
+  for (const EdgeKind kind : {EdgeKind::kDirected, EdgeKind::kUndirected}) {
+    EXPECT_THAT(postman_walk({}, kind, 2, 1, {})->walk.nodes, ElementsAre(1));
+  }
+}
+
 TEST(Postman, WalksAPathThereAndBack) {
   const Multigraph path{.edges = {{0, 1}, {1, 2}}};
   EXPECT_THAT(postman_walk(path, EdgeKind::kUndirected, 3, 0, {.end = 0})->walk.nodes, ElementsAre(0, 1, 2, 1, 0));

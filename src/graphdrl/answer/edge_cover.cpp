@@ -30,7 +30,7 @@ class EdgePlanner {
         graph_(graph),
         reset_cost_(reset_cost),
         directed_(world.open().directed()),
-        mixed_(!graph.both_ways.empty()),
+        most_prize_(graph.prizes.empty() ? 1 : *std::ranges::max_element(graph.prizes)),
         limit_(task.limit()),
         leaving_(world.node_count()) {
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
@@ -210,7 +210,7 @@ class EdgePlanner {
   }
 
   // Whether it is planned by planned(); else by many greedy walks.
-  bool is_planned() const { return directed_ && !mixed_; }
+  bool is_planned() const { return directed_ && graph_.both_ways.empty(); }
 
  private:
   struct Growing {
@@ -236,7 +236,6 @@ class EdgePlanner {
   // Goes to the nearest edge left, for its prize, and over it. False where none can be paid for.
   bool take_nearest(Growing& grown, double noise, Rng& rng) const {
     const NodeId here = grown.walk.nodes.back();
-    const double most = graph_.prizes.empty() ? 1 : *std::ranges::max_element(graph_.prizes);
     std::int64_t nearest = -1;
     NodeId at = kNoNode;
     double least = kNoLimit;
@@ -252,7 +251,7 @@ class EdgePlanner {
         nearest = edge;
         at = node;
       }
-      return cost >= least * most ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
+      return cost >= least * most_prize_ ? NearestFirst::Next::kEnd : NearestFirst::Next::kThrough;
     };
     if (look_at(here, 0) == NearestFirst::Next::kThrough) {
       grown.search.run(world_.open(), here, limit_ - grown.walk.cost, look_at);
@@ -286,7 +285,7 @@ class EdgePlanner {
   const Multigraph& graph_;
   std::optional<double> reset_cost_;
   bool directed_;
-  bool mixed_;  // directed, but for some edges
+  double most_prize_;  // of an edge
   double limit_;
   std::vector<std::vector<std::int64_t>> leaving_;  // [N], edges that lead on from a node
 };
@@ -334,10 +333,6 @@ std::optional<PostmanWalk> walk_over_all(const World& world, const Task& task, c
   if (has_too_many_odd_nodes(graph, kind, world.node_count())) return std::nullopt;
   return postman_walk(graph, kind, world.node_count(), task.start(), {.end = task.end(), .reset_cost = reset_cost});
 }
-
-}  // namespace
-
-namespace {
 
 // Of a cover that walks all.
 void compare_with_all(const PostmanWalk& all, EdgeCover& cover) {

@@ -97,10 +97,9 @@ World world_of(std::string name, const EdgeArrays& arrays, GraphMap map) {
     throw Error({.what = fmt::format("bad coordinates of node {}", i), .expected = "finite numbers"});
   }
   if (map.blocked.empty()) map.blocked.resize(n);
-  const bool worth_the_same = std::ranges::all_of(arrays.prizes, [](double prize) { return prize == 1; });
   Multigraph all{.edges = std::move(edges), .labels = arrays.labels};
+  all.prizes.assign(arrays.prizes.begin(), arrays.prizes.end());
   if (arrays.directed) all.both_ways = arrays.both_ways;
-  if (!worth_the_same) all.prizes.assign(arrays.prizes.begin(), arrays.prizes.end());
   set_edges(map, static_cast<NodeId>(arrays.node_count), std::move(all),
             arrays.directed ? EdgeKind::kDirected : EdgeKind::kUndirected);
   return World(std::move(name), std::move(map));

@@ -87,6 +87,7 @@ inline Multigraph one_way(const Multigraph& all) {
 // Gives a map edges, and their list where its graph does not say all of it.
 inline void set_edges(GraphMap& map, NodeId node_count, Multigraph all, EdgeKind kind) {
   map.graph = Graph::from_edges(node_count, all.arcs(), kind);
+  if (std::ranges::all_of(all.prizes, [](double prize) { return prize == 1; })) all.prizes.clear();
   const bool plain = all.labels.empty() && all.prizes.empty() && all.both_ways.empty();
   const bool whole = plain && std::ssize(all.edges) == map.graph.edge_count();
   map.multigraph = whole ? nullptr : std::make_shared<const Multigraph>(std::move(all));

@@ -178,7 +178,8 @@ class DirectedPostman {
     }
     const double bound = relaxed.cost;
     Relaxed best = graph_.both_ways.empty() ? std::move(relaxed) : solve(turned, false);
-    const auto tries = std::min<std::int64_t>(std::ssize(undecided), kTurnWork / std::ssize(graph_.edges));
+    const auto tries =
+        std::min<std::int64_t>(std::ssize(undecided), kTurnWork / std::max<std::int64_t>(std::ssize(graph_.edges), 1));
     for (std::int64_t i = 0; i < tries && best.cost > bound; ++i) {
       turned[undecided[i]] = true;
       Relaxed other = solve(turned, false);

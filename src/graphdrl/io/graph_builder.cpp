@@ -246,8 +246,6 @@ GraphMap GraphBuilder::build() {
   EdgeList all = take_edges();
   GraphMap map;
   if (!all.labels.empty()) all.labels.resize(all.edges.size());
-  const bool worth_the_same = std::ranges::all_of(all.prizes, [](double prize) { return prize == 1; });
-  if (worth_the_same) all.prizes.clear();
   if (!all.prizes.empty()) all.prizes.resize(all.edges.size(), 1.0);
   std::vector<bool> both_ways;
   if (all.leading_back > 0) {
