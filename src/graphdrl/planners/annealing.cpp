@@ -18,8 +18,11 @@ bool Annealing::is_selective(const Targets& targets, double prize) {
   return prize < (1 - kSelectiveShare) * targets.total_prize();
 }
 
-Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed, const Tour& start)
-    : draft_(targets, limit, seed), two_opt_(targets), steps_per_look_(std::max(1, targets.end() / kLooks)) {
+Annealing::Annealing(const Targets& targets, double limit, std::uint64_t seed, const Tour& start, double price)
+    : draft_(targets, limit, seed),
+      two_opt_(targets),
+      elsewhere_(price),
+      steps_per_look_(std::max(1, targets.end() / kLooks)) {
   this->start(start);
 }
 
@@ -38,7 +41,7 @@ void Annealing::recombine(const std::vector<int>& other) {
   improve();
   if (too_dear()) draft_.route.undo();
   draft_.route.keep();
-  best_.prize = -1;
+  best_.prize = -kNoLimit;
   remember();
 }
 
@@ -72,7 +75,7 @@ const Tour& Annealing::best() {
 
 void Annealing::remember() {
   const Route& route = draft_.route;
-  const double more = route.prize() - best_.prize;
+  const double more = route.prize() - best_.prize - elsewhere_ * (route.cost() - best_.cost);
   const double rounding = kCostRounding * draft_.mean_prize;
   if (more < -rounding || (more < rounding && route.cost() >= best_.cost * (1 - kCostRounding))) return;
   best_.order.clear();
@@ -83,7 +86,11 @@ void Annealing::remember() {
   }
   best_.prize = route.prize();
   best_.cost = route.cost();
-  if (draft_.limit > 0) price_ = kPrice * best_.prize / draft_.limit;
+  if (elsewhere_ > 0) {
+    price_ = elsewhere_;
+  } else if (draft_.limit > 0) {
+    price_ = kPrice * best_.prize / draft_.limit;
+  }
 }
 
 // Straight ways may cost more than those that they take the place of [Graph::complete()].

@@ -5,25 +5,18 @@
 #include <vector>
 
 #include "graphdrl/planners/moves.h"
+#include "graphdrl/planners/tour.h"
 
 namespace graphdrl {
-
-// A route, kept: its targets in order, the costs of the ways to each of them and to the end, what it is worth and
-// costs.
-struct Tour {
-  std::vector<int> order;
-  std::vector<double> links;
-  double prize = 0;
-  double cost = 0;
-};
 
 // Simulated annealing over routes [Kirkpatrick, Gelatt and Vecchi 1983]. Each step goes to a random target: ruin, a
 // random 2-opt move, recreate, 2-opt from what changed. What comes out is accepted by the rule of Metropolis; its worth
 // is its prize, less a price of its cost. Where edges lead one way, nothing is turned round.
 class Annealing {
  public:
-  // start: its prize and cost do not matter.
-  Annealing(const Targets& targets, double limit, std::uint64_t seed, const Tour& start);
+  // start: its prize and cost do not matter. price: what a unit of cost is worth elsewhere; the best route is then the
+  // one worth most after it was paid. 0: nothing, and of routes worth the same the cheapest is best.
+  Annealing(const Targets& targets, double limit, std::uint64_t seed, const Tour& start, double price = 0);
 
   // Goes on from another tour.
   void start(const Tour& tour);
@@ -53,12 +46,13 @@ class Annealing {
 
   Draft draft_;
   TwoOpt two_opt_;
-  double price_ = 0;        // of a unit of cost
+  double elsewhere_;        // the price of a unit of cost there
+  double price_ = 0;        // likewise, for what is accepted
   std::vector<int> loose_;  // targets whose way on may cost less than is known
   NearestFirst search_;
   std::int64_t steps_ = 0;
   std::int64_t steps_per_look_;  // at whether the route is the best
-  Tour best_ = {.order = {}, .links = {}, .prize = -1};
+  Tour best_ = {.order = {}, .links = {}, .prize = -kNoLimit};
 };
 
 }  // namespace graphdrl

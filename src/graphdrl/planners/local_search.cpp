@@ -9,6 +9,8 @@
 #include "graphdrl/planners/baselines.h"
 #include "graphdrl/planners/beam.h"
 #include "graphdrl/planners/bound.h"
+#include "graphdrl/planners/covering_walk.h"
+#include "graphdrl/planners/parts.h"
 
 namespace graphdrl {
 namespace {
@@ -32,44 +34,18 @@ constexpr double kBranchWork = 2e6;  // once the search is over
 
 constexpr double kExplorerVisitS = 0.4e-3;  // a first visit: the explorer is not begun where it would not end
 constexpr double kStepS = 5e-6;             // a step, about
-constexpr double kBranchFrom = 4;  // branch only if the time left is over this many searches; it then gets one's time
-constexpr double kWalkTimes = 2;   // time kept for the last walk, in times that the walk of the start takes
-constexpr int kChains = 2;         // without a deadline, so that the walk does not depend on the number of threads
-constexpr int kStepsPerLook = 16;  // at the clock
+constexpr double kBranchFrom = 4;    // branch only if the time left is over this many searches; it then gets one's time
+constexpr double kWalkTimes = 2;     // time kept for the last walk, in times that the walk of the start takes
+constexpr int kChains = 2;           // without a deadline, so that the walk does not depend on the number of threads
+constexpr int kStepsPerLook = 16;    // at the clock
+constexpr int kPartsFrom = 5000;     // nodes in reach: walks over more are first improved by parts
+constexpr int kWholeUntil = 20'000;  // beyond, the whole is annealed only once parts do no better
+constexpr double kPartsShare = 0.5;  // of the time left, up to there
+constexpr std::int64_t kPartsSteps = 1'000'000;  // without a deadline
 // At most kLargeSteps up to kLargeTargets targets, and fewer by the square of their number beyond: in caves of 512x512
 // cells at 0.5x a step takes several milliseconds, and ten minutes of steps visit no more than none.
 constexpr double kLargeSteps = 1e6;
 constexpr double kLargeTargets = 1e4;
-
-// What a walk makes for, in the order of first visits.
-Tour tour_of(const Task& task, const Targets& targets, const Plan& plan) {
-  const std::vector<NodeId>& walk = plan.walk;
-  Tour tour{.order = {}, .links = {}, .prize = plan.prize, .cost = plan.cost};
-  const Graph& open = task.view().open();
-  std::vector<char> taken(targets.end());
-  double cost = 0;
-  for (std::size_t i = 1; i < walk.size(); ++i) {
-    if (walk[i] == walk[i - 1]) continue;  // a blocked move
-    cost += open.cost(walk[i - 1], open.index_of(walk[i - 1], walk[i]));
-    const int target = targets.target_of(walk[i]);
-    if (target <= 0 || taken[target] != 0) continue;
-    taken[target] = 1;
-    tour.order.push_back(target);
-    tour.links.push_back(cost);
-    cost = 0;
-  }
-  tour.links.push_back(task.ends_anywhere() ? 0 : cost);
-  return tour;
-}
-
-// The walk that makes for these targets, each by a cheapest way, and for the end.
-std::vector<NodeId> walk_of(const Task& task, const Targets& targets, std::span<const int> order) {
-  NearestFirst search;
-  std::vector<NodeId> walk = {task.start()};
-  for (const int target : order) append_way_to(task.view(), targets.node(target), walk, search);
-  append_way_to_end(task, walk, search);
-  return walk;
-}
 
 // The chains of one task, and when they end: after a number of steps, at a deadline, or at what comes first.
 struct Chains {
@@ -173,6 +149,9 @@ Plan LocalSearchPlanner::plan_from(const Task& task, Plan known, const Clock& cl
 
 // best: the best walk up to now.
 Plan LocalSearchPlanner::search(const Task& task, Plan best, const Clock& clock) {
+  if (std::ssize(task.reach().nodes) > kPartsFrom && !task.view().open().is_complete()) {
+    return search_by_parts(task, std::move(best), clock);
+  }
   const Targets targets(task, clock.share(kTargetsShare));
   best.bound = std::min(max_prize(task, clock.share(kBoundShare)), targets.total_prize());
   std::unique_ptr<LpBound> lp;
@@ -182,7 +161,7 @@ Plan LocalSearchPlanner::search(const Task& task, Plan best, const Clock& clock)
     lp->cut(best.prize, {.clock = clock.share(kBoundShare), .work = work});
     best.bound = std::min(best.bound, lp->bound());
   }
-  best = best_start(task, targets, std::move(best), clock);
+  best = best_start(task, std::move(best), clock);
   const auto search_for = [&](std::int64_t steps) {
     if (meets(best.prize, best.bound) || !targets.complete() || targets.end() <= 1 || clock.passed()) return;
     best = anneal(task, targets, std::move(best), steps, clock);
@@ -212,16 +191,39 @@ Plan LocalSearchPlanner::search(const Task& task, Plan best, const Clock& clock)
   return best;
 }
 
+Plan LocalSearchPlanner::search_by_parts(const Task& task, Plan best, const Clock& clock) {
+  const auto nodes = std::ssize(task.reach().nodes);
+  const bool small = nodes <= kWholeUntil;
+  const double bound = max_prize(task, clock.share(kBoundShare));
+  best.bound = bound;
+  best = best_start(task, std::move(best), clock);
+  std::int64_t steps = 0;
+  if (iterations_ > 0 || !clock.has_deadline()) steps = iterations_ > 0 ? iterations_ : kPartsSteps;
+  best = improve_by_parts(task, std::move(best), steps, seed_, small ? clock.share(kPartsShare) : clock);
+  const bool has_time = iterations_ == 0 && !clock.passed() && (small || clock.has_deadline());
+  if (has_time && !meets(best.prize, bound)) {
+    const Targets targets(task, clock.share(kTargetsShare));
+    steps = clock.has_deadline() ? 0 : default_steps(targets.end());
+    if (targets.complete() && targets.end() > 1) best = anneal(task, targets, std::move(best), steps, clock);
+  }
+  best.settle(bound);
+  return best;
+}
+
 // The best of all walks to begin with.
-Plan LocalSearchPlanner::best_start(const Task& task, const Targets& targets, Plan best, const Clock& clock) {
+Plan LocalSearchPlanner::best_start(const Task& task, Plan best, const Clock& clock) {
   const double bound = best.bound;
+  const auto nodes = static_cast<double>(task.reach().nodes.size());
+  if (nodes > Targets::kTableTargets && covering_fits(task)) {
+    best = better_of(std::move(best), covering_plan(task, clock));
+  }
   DepthFirstPlanner depth_first;
   BeamPlanner beam{BeamOptions()};
   for (Planner* const planner : std::initializer_list<Planner*>{&depth_first, &beam, explorer_.get()}) {
     if (meets(best.prize, bound) || clock.passed()) break;
     if (planner == &beam && !beam_fits(task.view(), BeamOptions())) continue;
     const Clock until = clock.share(kStartShare);
-    if (planner == explorer_.get() && kExplorerVisitS * targets.end() > until.seconds_left()) continue;
+    if (planner == explorer_.get() && kExplorerVisitS * nodes > until.seconds_left()) continue;
     best = better_of(std::move(best), planner->plan(task, until));
     if (best.optimal) break;
   }

@@ -31,7 +31,8 @@ class LocalSearchPlanner final : public Planner {
 
  private:
   Plan search(const Task& task, Plan best, const Clock& clock);
-  Plan best_start(const Task& task, const Targets& targets, Plan best, const Clock& clock);
+  Plan search_by_parts(const Task& task, Plan best, const Clock& clock);
+  Plan best_start(const Task& task, Plan best, const Clock& clock);
   Plan anneal(const Task& task, const Targets& targets, Plan best, std::int64_t steps, Clock clock);
 
   std::int64_t iterations_;
