@@ -13,6 +13,7 @@ namespace {
 constexpr double kWorstDetour =
     0.75;                            // prize for its cost, in mean prizes a mean edge: what brings more is not left out
 constexpr int kLongestDetour = 400;  // steps
+constexpr int kMostRounds = 10;      // of joining near nodes, each of which is linear; around a hub each joins two
 constexpr int kSizeTries = 5;        // of how much to cover, where the walk must end somewhere
 constexpr double kFirstSize = 1.02;  // of the steps that the limit pays for, in nodes
 constexpr double kMoreSize = 1.01;   // times as many nodes, where all of them can be paid for
@@ -120,11 +121,35 @@ class NearbyWays {
   std::vector<Way> ways_;
 };
 
+// Joins odd nodes along a tree of shortest ways: an edge is walked if an odd number of them hangs from it.
+void join_along_tree(const Graph& graph, NodeId root, std::vector<char>& is_odd, Multigraph& edges) {
+  std::vector<std::pair<NodeId, NodeId>> tree;  // nodes and what they hang from, the root's neighbours first
+  std::vector<char> met(graph.node_count());
+  met[root] = 1;
+  std::size_t done = 0;
+  for (NodeId node = root;; node = tree[done++].first) {
+    for (const NodeId next : graph.neighbours(node)) {
+      if (met[next] != 0) continue;
+      met[next] = 1;
+      tree.emplace_back(next, node);
+    }
+    if (done == tree.size()) break;
+  }
+  for (std::size_t i = tree.size(); i-- > 0;) {
+    const auto [node, parent] = tree[i];
+    if (is_odd[node] == 0) continue;
+    is_odd[node] = 0;
+    is_odd[parent] ^= 1;
+    edges.add(node, parent, 1);
+  }
+}
+
 // Joins odd nodes in pairs, near ones first, until at most one is left.
-void join_pairs(const Graph& graph, std::vector<NodeId> odd, Multigraph& edges) {
+void join_pairs(const Graph& graph, std::vector<NodeId> odd, NodeId root, Multigraph& edges) {
   std::vector<char> is_odd(graph.node_count());
   for (const NodeId node : odd) is_odd[node] = 1;
-  while (odd.size() > 1) {
+  for (int round = 0; odd.size() > 1; ++round) {
+    if (round == kMostRounds) return join_along_tree(graph, root, is_odd, edges);
     const NearbyWays nearby(graph, odd);
     for (const NearbyWays::Way& way : nearby.ways()) {
       const NodeId a = nearby.site(way.a);
@@ -179,7 +204,7 @@ std::vector<NodeId> walk_over(const Task& task, const std::vector<NodeId>& nodes
   if (!task.ends_anywhere()) odd[task.end()] ^= 1;
   std::vector<NodeId> left;
   std::copy_if(nodes.begin(), nodes.end(), std::back_inserter(left), [&](NodeId node) { return odd[node] != 0; });
-  join_pairs(graph, std::move(left), edges);
+  join_pairs(graph, std::move(left), task.start(), edges);
   if (clock.passed()) return {task.start()};
   connect(graph, nodes, edges);
   if (clock.passed()) return {task.start()};
@@ -230,13 +255,13 @@ class Shortening {
 
   double cost() const { return cost_; }
 
-  // What is left, as far as the limit pays for it.
+  // What is left, as far as the limit pays for it if the walk may end anywhere.
   std::vector<NodeId> take_walk() {
     std::vector<NodeId> walk = {walk_[0]};
     double left = task_.limit();
     for (int i = next_[0]; i < std::ssize(walk_); i = next_[i]) {
       left -= step_cost(walk.back(), walk_[i]);
-      if (left < task_.cost_to_end(walk_[i])) break;
+      if (left < 0 && task_.ends_anywhere()) break;
       walk.push_back(walk_[i]);
     }
     return walk;
@@ -327,14 +352,14 @@ class Shortening {
   double cost_ = 0;
 };
 
-// All that is to be visited, and the ends, by what a walk costs that goes there alone.
+// The ends, then all that is to be visited, by what a walk costs that goes there alone.
 std::vector<NodeId> nodes_to_cover(const Task& task) {
   const NodeSet ground = task.ground();
   const std::vector<bool>& in_reach = task.reach().contains;
-  std::vector<std::pair<double, NodeId>> nodes = {{task.cost_to_end(task.start()), task.start()}};
+  std::vector<std::pair<double, NodeId>> nodes = {{0, task.start()}};
   NearestFirst().run(task.view().open(), task.start(), task.limit(), [&](NodeId node, double cost) {
     const bool counts = node == task.end() || (task.prize(node) > 0 && !ground.contains(node));
-    if (counts && in_reach[node]) nodes.emplace_back(cost + task.cost_to_end(node), node);
+    if (counts && in_reach[node]) nodes.emplace_back(node == task.end() ? 0 : cost + task.cost_to_end(node), node);
     return NearestFirst::Next::kThrough;
   });
   std::stable_sort(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -360,20 +385,24 @@ Plan covering_plan(const Task& task, const Clock& clock) {
   const std::vector<NodeId> nodes = nodes_to_cover(task);
   const double mean_cost = task.view().open().mean_cost();
   const double worst = kWorstDetour * mean_prize(task, nodes) / mean_cost;
-  Plan best = plan_of_walk(task, {task.start()});
   if (task.ends_anywhere()) {
     Shortening walk(task, walk_over(task, nodes, clock));
     walk.shorten(worst);
     return plan_of_walk(task, walk.take_walk());
   }
+  std::vector<NodeId> straight = {task.start()};
+  NearestFirst search;
+  append_way_to_end(task, straight, search);
+  Plan best = plan_of_walk(task, std::move(straight));
   double size = kFirstSize * task.limit() / mean_cost;
   for (int i = 0; i < kSizeTries && !clock.passed(); ++i) {
-    size = std::clamp(size, 1.0, static_cast<double>(nodes.size()));
+    size = std::clamp(size, std::min(2.0, static_cast<double>(nodes.size())), static_cast<double>(nodes.size()));
     Shortening walk(task, walk_over(task, {nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(size)}, clock));
     const bool fits = walk.cost() <= task.limit();
     walk.shorten(worst);
     const double cost = walk.cost();
     if (cost > task.limit()) walk.shorten(kNoLimit);
+    if (clock.passed()) break;
     if (walk.cost() <= task.limit()) best = better_of(std::move(best), plan_of_walk(task, walk.take_walk()));
     if (fits && size >= static_cast<double>(nodes.size())) break;
     size *= cost > task.limit() ? task.limit() / cost : kMoreSize;

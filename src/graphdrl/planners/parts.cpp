@@ -213,6 +213,7 @@ class Parts {
     const PartWorld world(task_, job, part, is_last && task_.ends_anywhere());
     const Plan now = plan_of_walk(world.task(), world.walk());
     const Targets targets(world.task());
+    if (targets.end() <= 1) return;
     const std::uint64_t seed = derive_seed(seed_, 1 + static_cast<std::uint64_t>(sweep), job.part);
     Annealing annealing(targets, world.task().limit(), seed, tour_of(world.task(), targets, now), price_);
     const std::int64_t steps = steps_for(sweep, targets.end());

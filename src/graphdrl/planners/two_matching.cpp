@@ -7,12 +7,16 @@
 namespace graphdrl {
 namespace {
 
-constexpr int kMostHops = 6;  // that an end makes: on maps of cells more than two hardly ever pay
+constexpr double kMeanRounding = 1e-9;  // relative, of a mean
+constexpr int kMostHops = 6;            // that an end makes: on maps of cells more than two hardly ever pay
+constexpr int kMostLooks = 256;         // from a node, at those two steps away: hubs have more
+constexpr int kMostSearches = 40;       // each of which is linear
 
 }  // namespace
 
 TwoMatching::TwoMatching(const Graph& graph, std::span<const NodeId> nodes)
     : graph_(graph),
+      most_cost_(graph.mean_cost() * (1 + kMeanRounding)),
       nodes_(nodes.begin(), nodes.end()),
       covered_(graph.node_count()),
       wanted_(graph.node_count()),
@@ -131,9 +135,10 @@ class TwoMatching::EndSearch {
   }
 
   void hop_from(NodeId node, int hops) {
+    int looks = 0;
     for (const NodeId over : matching_.graph_.neighbours(node)) {
       for (const NodeId next : matching_.graph_.neighbours(over)) {
-        if (is_done(node)) return;
+        if (is_done(node) || ++looks > kMostLooks) return;
         if (matching_.covered_[next] == 0 || next == node) continue;
         const Mark& there = marks_[next];
         if (there.root == kNoNode) {
@@ -181,7 +186,7 @@ class TwoMatching::EndSearch {
 
 void TwoMatching::join_ends(const Clock& clock) {
   EndSearch search(*this);
-  while (!clock.passed() && search.run() > 0) {
+  for (int i = 0; i < kMostSearches && !clock.passed() && search.run() > 0; ++i) {
   }
 }
 

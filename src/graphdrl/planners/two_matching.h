@@ -46,12 +46,13 @@ class TwoMatching {
   bool is_end(NodeId node) const { return degree(node) < wanted_[node]; }
   bool linked(NodeId a, NodeId b) const { return links_[a][0] == b || links_[a][1] == b; }
   bool usable(NodeId from, int index) const {
-    return covered_[graph_.neighbours(from)[index]] != 0 && graph_.cost(from, index) <= graph_.mean_cost();
+    return covered_[graph_.neighbours(from)[index]] != 0 && graph_.cost(from, index) <= most_cost_;
   }
   void link(NodeId a, NodeId b);
   void unlink(NodeId a, NodeId b);
 
   const Graph& graph_;
+  double most_cost_;  // of an edge
   std::vector<NodeId> nodes_;
   std::vector<char> covered_;                 // [N]
   std::vector<std::int8_t> wanted_;           // [N]
