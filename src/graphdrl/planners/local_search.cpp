@@ -42,8 +42,7 @@ constexpr int kPartsFrom = 5000;     // nodes in reach: walks over more are firs
 constexpr int kWholeUntil = 20'000;  // beyond, the whole is annealed only once parts do no better
 constexpr double kPartsShare = 0.5;  // of the time left, up to there
 constexpr std::int64_t kPartsSteps = 1'000'000;  // without a deadline
-// At most kLargeSteps up to kLargeTargets targets, and fewer by the square of their number beyond: in caves of 512x512
-// cells at 0.5x a step takes several milliseconds, and ten minutes of steps visit no more than none.
+// At most kLargeSteps up to kLargeTargets targets, and fewer by the square of their number beyond: steps take longer.
 constexpr double kLargeSteps = 1e6;
 constexpr double kLargeTargets = 1e4;
 
@@ -221,6 +220,7 @@ Plan LocalSearchPlanner::best_start(const Task& task, Plan best, const Clock& cl
   BeamPlanner beam{BeamOptions()};
   for (Planner* const planner : std::initializer_list<Planner*>{&depth_first, &beam, explorer_.get()}) {
     if (meets(best.prize, bound) || clock.passed()) break;
+    if (planner != &depth_first && !clock.has_deadline() && nodes > kWholeUntil) continue;  // they take minutes
     if (planner == &beam && !beam_fits(task.view(), BeamOptions())) continue;
     const Clock until = clock.share(kStartShare);
     if (planner == explorer_.get() && kExplorerVisitS * nodes > until.seconds_left()) continue;
