@@ -17,10 +17,10 @@ namespace {
 
 // By what is visited at 1.0x in 10 s on two threads, of 8,000 nodes; beside each number what others lose. On 100×100
 // cells of which a fifth is blocked, and for kAround in mazes (M) and geometric graphs (G) too.
-constexpr int kLeastLength = 250;   // steps of a part; up to twice as many. From 120: 13; from 500: 50
-constexpr double kAround = 2;       // times the nodes of a part, that are looked at. 1.5: 30 to 90 (M); 3: 40 (G)
-constexpr double kPartPrice = 0.8;  // of a unit of cost, of what the walk brings for one. 0.65: 30; 0.9: 10
-constexpr double kProgress = 0.99;  // through the schedule of annealing, all the time. 0.95: 15; from 0.6 on: 50
+constexpr int kLeastLength = 250;         // steps of a part; up to twice as many. From 120: 13; from 500: 50
+constexpr double kAround = 2;             // times the nodes of a part, that are looked at. 1.5: 30 to 90 (M); 3: 40 (G)
+constexpr double kPartPrice = 0.8;        // of a unit of cost, of what the walk brings for one. 0.65: 30; 0.9: 10
+constexpr double kProgress = 0.99;        // through the schedule of annealing, all the time. 0.95: 15; from 0.6 on: 50
 constexpr std::int64_t kFirstSteps = 50;  // for each target; twice as many in each sweep. 400: 8
 constexpr int kMostDoublings = 6;
 constexpr int kMostInVain = 3;  // sweeps
