@@ -59,6 +59,15 @@ if(GRAPHDRL_CLP)
   endif()
 endif()
 
+if(GRAPHDRL_MPI)
+  # MPI's C interface. Not MPI_CXX, whose C++ bindings are older than C++20.
+  enable_language(C)
+  find_package(MPI QUIET COMPONENTS C)
+  require("${MPI_C_FOUND}" MPI "libopenmpi-dev and openmpi-bin (scripts/setup --mpi)")
+  add_library(graphdrl_mpi_library INTERFACE)
+  target_link_libraries(graphdrl_mpi_library INTERFACE MPI::MPI_C)
+endif()
+
 if(GRAPHDRL_TORCH)
   # LibTorch's BLAS: OpenBLAS's OpenMP build and no other; with the pthread build its thread pool fights OpenMP's.
   # Debian keeps each build in a folder of its own. The programs look there first (DT_RPATH, which, unlike DT_RUNPATH,

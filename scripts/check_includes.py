@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Fails on an include against ARCHITECTURE.md's order of the modules, on a row there that names other files than there
-are, and on LibTorch in other modules than its own."""
+are, and on LibTorch and MPI in other modules than their own."""
 
 import pathlib
 import re
@@ -11,6 +11,7 @@ SOURCES = ROOT / "src" / "graphdrl"
 MODULE = re.compile(r"^### `([\w/]+)/`.*\n((?:(?!^#).*\n)*)", re.MULTILINE)
 ROW = re.compile(r"^\| (`.+?`) \|", re.MULTILINE)
 OWN_INCLUDE = re.compile(r'^#include "graphdrl/([\w/]+)/[^/]+"')
+MPI_INCLUDE = re.compile(r"^#include [<\"]mpi")
 TORCH_INCLUDE = re.compile(r"^#include [<\"](torch|ATen|c10)/")
 
 
@@ -46,6 +47,8 @@ def main() -> int:
                 problems.append(f"{where}: {module}/ must not include {own[1]}/, which comes after it")
             if TORCH_INCLUDE.match(line) and module != torch_module:
                 problems.append(f"{where}: only {torch_module}/ may see LibTorch")
+            if MPI_INCLUDE.match(line) and module != "mpi":
+                problems.append(f"{where}: only mpi/ may see MPI")
     for problem in problems:
         print(problem, file=sys.stderr)
     return 1 if problems else 0

@@ -128,7 +128,7 @@ TEST(SideBySideThread, TrainTogetherWhatDiffersInSeedsAlone) {
   }
   runs[1].options.batch_size = 4;
   const Together learners;
-  EXPECT_TRUE(SideBySide(runs).run(kNever, kSilent, learners));
+  EXPECT_TRUE(SideBySide(runs, folder.path()).run(kNever, kSilent, learners));
   EXPECT_EQ(learners.groups, (std::vector<int>{2, 1}));
   for (const PlannedRun& run : runs) {
     EXPECT_TRUE(bytes_of(run.directory) == train_in(folder / "alone" / run.directory.path().filename(), run.options));
@@ -183,7 +183,8 @@ TEST(SeedRuns, RefuseFoldersThatAreNone) {
   EXPECT_FALSE(std::filesystem::exists(folder / "all"));
   SeedRuns::start(short_paper(), {1, 2}, folder / "all");
   EXPECT_TRUE(SeedRuns::are_in(folder / "all"));
-  EXPECT_THAT(error_of([&] { SeedRuns::start(short_paper(), {1, 2}, folder / "all"); }), HasSubstr("--resume"));
+  EXPECT_EQ(error_of([&] { SeedRuns::start(short_paper(), {1, 2}, folder / "all"); }), "");
+  EXPECT_THAT(error_of([&] { SeedRuns::start(short_paper(), {1, 3}, folder / "all"); }), HasSubstr("--resume"));
   const std::filesystem::path file = folder / "all" / "seeds.json";
   const std::string whole = read_file(file);
   for (const char* const text : {"", "[]", "{}", R"({"seeds": []})", R"({"seeds": [-1]})", R"({"seeds": [1, 1]})",

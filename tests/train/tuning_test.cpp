@@ -50,6 +50,8 @@ TEST(Tuning, BeginsWithThePapersSettingAndMapsThatAreNotThePapers) {
     maps.insert(world.map()->blocked);
   }
   EXPECT_EQ(maps.size(), 10u + 40u + 40u);
+  EXPECT_EQ(error_of([&] { Tuning::start(options, folder / "tune"); }), "");  // the same again
+  options.seed = 2;
   EXPECT_THAT(error_of([&] { Tuning::start(options, folder / "tune"); }), HasSubstr("--resume"));
   options.rounds = parse_rounds("2881x1");
   EXPECT_THAT(error_of([&] { Tuning::start(options, folder / "more"); }), HasSubstr("at most 2880"));

@@ -27,6 +27,12 @@ class MachineError : public Error {
   using Error::Error;
 };
 
+// Another process is at work on it: later it may do.
+class Busy : public Error {
+ public:
+  using Error::Error;
+};
+
 // `text` on one line: a path or a name may hold line breaks and terminal codes.
 std::string escaped(std::string_view text);
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "graphdrl/answer/answer.h"
@@ -29,6 +31,8 @@ struct EvaluateOptions {
   std::string until;
   std::vector<std::string> believed;
   CoverText cover;
+  std::string out;
+  ShareText share;
   bool json = false;
 };
 
@@ -83,7 +87,19 @@ Json to_json(const Comparison& comparison) {
   return document;
 }
 
-void evaluate(const EvaluateOptions& options) {
+// What the results come from: the options, and the files of maps and policies.
+Json origin_of(const EvaluateOptions& options, const std::vector<std::string>& policies, const CLI::App& command) {
+  std::vector<std::string> maps = options.maps;
+  maps.insert(maps.end(), options.believed.begin(), options.believed.end());
+  return {{"options", given_options(command, {"--out", "--task", "--merge", "--threads", "--memory-limit", "--json"})},
+          {"files", checksums_of(maps, policies)}};
+}
+
+void evaluate(const EvaluateOptions& options, const CLI::App& command, Ranks& ranks) {
+  if (options.out.empty() && (!options.share.task.empty() || options.share.merge)) {
+    throw Error({.what = "shares meet in a folder", .expected = "--out FOLDER with --task and --merge"});
+  }
+
   ComparisonOptions comparison = options.comparison;
   if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
   comparison.reveal = Reveal::parse(options.reveal);
@@ -105,6 +121,7 @@ void evaluate(const EvaluateOptions& options) {
   if (!options.believed.empty() && comparison.policies == kOnlineLadder) {
     comparison.policies.emplace_back(kBelievingPolicy);
   }
+  options.share.share();  // throws Error on a bad one
   std::vector<World> worlds;
   for (const std::string& maps : options.maps) {
     const std::vector<World> more = load_worlds({maps}, options.reading);
@@ -120,14 +137,34 @@ void evaluate(const EvaluateOptions& options) {
     }
     for (std::size_t i = 0; i < old.size(); ++i) comparison.believed.push_back(believe(old[i], worlds[i]));
   }
-  const Comparison result = compare(worlds, comparison);
-  if (options.json) return print_json(to_json(result));
-  print_text(format_comparison(result));
+  const TaskWorkers workers{.ranks = ranks, .share = options.share.share()};
+  std::optional<TaskFolder> folder;
+  if (!options.out.empty() || !ranks.alone()) {
+    const Json origin = origin_of(options, comparison.policies, command);
+    ranks.require_same("files", origin.dump(-1, ' ', false, Json::error_handler_t::replace));
+    if (!options.out.empty()) {
+      claim_folder(options.out, "evaluation", origin, ranks);
+      folder.emplace(std::filesystem::path(options.out) / "results");
+    }
+  }
+  const auto result = compare(worlds, comparison, workers, folder ? &*folder : nullptr);
+  if (!options.share.task.empty()) {
+    return print_text(fmt::format("Share {} of {} is done\n", workers.share.index + 1, workers.share.count));
+  }
+  if (!result) {
+    throw Error({.what = "results are lacking", .expected = "all shares of them done by --task", .where = options.out});
+  }
+  if (options.json) {
+    print_json(to_json(*result));
+  } else {
+    print_text(format_comparison(*result));
+  }
+  if (folder) require_none_left_out(*folder);
 }
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app) {
+void add_evaluate_command(CLI::App& app, Ranks& ranks) {
   CLI::App& command = *app.add_subcommand("evaluate", "Compare policies on maps: the paper's Table 2 and the optimum");
   const auto options = std::make_shared<EvaluateOptions>();
   command.add_option("--policy", options->comparison.policies, policy_names() + "; may be given again")
@@ -180,11 +217,14 @@ void add_evaluate_command(CLI::App& app) {
       ->needs(reveal)
       ->type_name("S");
   add_seed_option(command, options->comparison.seed, "For the starts and for random policies");
+  add_text_option(command, "--out", options->out, "FOLDER",
+                  "Keep each result in this folder: the same command again computes what is missing");
+  add_share_options(command, options->share);
   command.add_flag("--json", options->json, "Print one JSON document");
   add_map_options(command, options->reading);
   add_threads_option(command);
   add_memory_limit_option(command);
-  command.callback([options] { evaluate(*options); });
+  command.callback([options, &command, &ranks] { evaluate(*options, command, ranks); });
 }
 
 }  // namespace graphdrl

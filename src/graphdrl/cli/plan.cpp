@@ -2,8 +2,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <set>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
@@ -12,6 +16,9 @@
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/env/load_worlds.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/io/json.h"
+#include "graphdrl/io/map_source.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/live/edge_exploration.h"
 #include "graphdrl/planners/registry.h"
@@ -39,6 +46,7 @@ struct PlanOptions {
   std::optional<double> think_time_s;
   std::vector<std::string> out;
   bool walk = false;
+  ShareText share;
   bool json = false;
   LiveArguments live;
 };
@@ -80,9 +88,15 @@ std::string format_plan(const Answer& answer, const PlanOptions& options) {
   return text;
 }
 
-void plan(const PlanOptions& options) {
-  for (const std::string& file : options.out) check_plan_file(file);
-  const World world = load_one_world(options.map, options.reading);
+// A world of the options' kind, and what is asked of it.
+struct Question {
+  World world;
+  Task task;
+  PlanRequest request;
+};
+
+Question question_of(const PlanOptions& options, const std::string& map) {
+  World world = load_one_world(map, options.reading);
   Asked asked = asked_of(world, options.asked);
   const bool until_covered = !options.until.empty();
   const bool edges = parse_cover(options.cover.cover) == Cover::kEdges;
@@ -93,7 +107,7 @@ void plan(const PlanOptions& options) {
                  .where = "--budget"});
   }
   if (until_covered || (edges && !asked.budget && !world.given().budget)) asked.budget = Budget(kNoLimit);
-  const Task task(world, asked);
+  Task task(world, asked);
   PlanRequest request = options.request;
   request.reveal = Reveal::parse(options.reveal);
   request.score = parse_score(options.score);
@@ -104,6 +118,12 @@ void plan(const PlanOptions& options) {
     request.believed = believe(load_one_world(options.believed, options.reading), world);
   }
   if (options.think_time_s) request.think_s = *options.think_time_s;
+  return {std::move(world), std::move(task), std::move(request)};
+}
+
+void plan_one(const PlanOptions& options) {
+  for (const std::string& file : options.out) check_plan_file(file);
+  const auto [world, task, request] = question_of(options, options.map);
   for (const std::string& file : options.out) check_plan_file(world, file);
   catch_stop_signals();  // the best walk so far is printed
   ProgressDisplay display("visited", /*first=*/0, kProgressAfterS);
@@ -127,10 +147,162 @@ void plan(const PlanOptions& options) {
   if (stop_signal() != 0) throw CLI::RuntimeError(128 + stop_signal());
 }
 
+// Whether a plan of each of many maps is asked for, into a folder.
+bool asks_for_many(const PlanOptions& options) {
+  std::error_code error;
+  const bool many = options.map == "paper" || std::filesystem::is_directory(options.map, error);
+  if (!many || options.out.size() != 1) return false;
+  const std::filesystem::path out = options.out.front();
+  return std::filesystem::is_directory(out, error) || !out.has_extension();
+}
+
+// A map of many, and where its plan goes.
+struct PlannedMap {
+  std::string source;
+  std::string name;  // of the file, without its ending; whole where several would have the same
+};
+
+std::vector<PlannedMap> planned_maps(const std::string& source) {
+  std::vector<PlannedMap> maps;
+  std::map<std::string, int> uses;
+  for (const std::string& one : map_sources(source)) {
+    std::string name = std::filesystem::path(one).filename().stem().string();
+    if (source == "paper") std::ranges::replace(name, ':', '-');
+    ++uses[name];
+    maps.push_back({.source = one, .name = std::move(name)});
+  }
+  std::set<std::string> names;
+  for (PlannedMap& map : maps) {
+    if (uses[map.name] > 1) map.name = std::filesystem::path(map.source).filename().string();
+    if (names.insert(map.name).second) continue;
+    throw Error({.what = "two plans would have the name " + map.name, .where = map.source});
+  }
+  return maps;
+}
+
+// A line of the summary; nothing where the plan is lacking.
+std::optional<Json> summary_of(const PlannedMap& map, const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return std::nullopt;
+  const nlohmann::json plan = parse_json(read_file(file), file.string());
+  Json line = {{"map", map.name}};
+  for (const char* const key :
+       {"policy", "budget", "visited", "coverage", "prize", "cost", "upper_bound", "gap", "optimal"}) {
+    line[key] = plan.value(key, nlohmann::json());
+  }
+  return line;
+}
+
+std::string to_csv(const Json& summary) {
+  std::string text;
+  for (const Json& line : summary) {
+    if (text.empty()) {
+      std::vector<std::string> keys;
+      for (const auto& item : line.items()) keys.push_back(item.key());
+      text += fmt::format("{}\n", fmt::join(keys, ","));
+    }
+    std::vector<std::string> fields;
+    for (const Json& value : line) {
+      fields.push_back(value.is_null() ? "" : value.is_string() ? csv_field(value.get<std::string>()) : value.dump());
+    }
+    text += fmt::format("{}\n", fmt::join(fields, ","));
+  }
+  return text;
+}
+
+// Writes FOLDER/summary.csv of the plans that are there, and gives it; says how many are not.
+Json summarise_plans(const std::vector<PlannedMap>& maps, const std::filesystem::path& folder) {
+  Json summary = Json::array();
+  for (const PlannedMap& map : maps) {
+    if (auto line = summary_of(map, folder / (map.name + ".json"))) summary.push_back(std::move(*line));
+  }
+  write_file(folder / "summary.csv", to_csv(summary));
+  return summary;
+}
+
+void plan_many(const PlanOptions& options, const CLI::App& command, Ranks& ranks) {
+  const std::filesystem::path folder = options.out.front();
+  const TaskWorkers workers{.ranks = ranks, .share = options.share.share()};
+  const std::vector<PlannedMap> maps = planned_maps(options.map);
+  std::vector<std::string> others = {options.request.policy};
+  if (!options.believed.empty()) others.push_back(options.believed);
+  const std::vector<std::string> free = {"--out",          "--task", "--merge", "--threads",
+                                         "--memory-limit", "--json", "--walk"};
+  const Json origin = {{"options", given_options(command, free)}, {"files", checksums_of({options.map}, others)}};
+  ranks.require_same("files", origin.dump(-1, ' ', false, Json::error_handler_t::replace));
+  const auto is_planned = [&](const PlannedMap& map) {
+    std::error_code error;
+    return std::filesystem::exists(folder / (map.name + ".json"), error);
+  };
+  if (ranks.is_first() && std::ranges::any_of(maps, is_planned) && !std::filesystem::exists(folder / ".plans.json")) {
+    throw Error(
+        {.what = "the folder holds files of the plans' names", .expected = "a new one", .where = folder.string()});
+  }
+  claim_folder(folder, ".plans", origin, ranks);
+  std::vector<TaskFolder::Task> tasks;
+  for (const PlannedMap& map : maps) tasks.push_back({.name = map.name, .done = is_planned(map)});
+  catch_stop_signals();
+  ProgressDisplay display("map");
+  std::mutex mutex;
+  std::int64_t done = 0;
+  std::int64_t to_do = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) to_do += !tasks[i].done && workers.share.has(static_cast<int>(i));
+  const auto work = [&](int task) {
+    const auto [world, asked, request] = question_of(options, maps[task].source);
+    const Answer answer = answer_task(world, asked, request, Clock(options.time_limit_s, &stop_flag()));
+    if (stop_flag().load()) return false;  // it may be worse than with the time that it should have
+    write_plan(answer, (folder / (maps[task].name + ".json")).string());
+    const std::lock_guard lock(mutex);
+    ++done;
+    display.show(done, to_do, maps[task].name, done == to_do);
+    return true;
+  };
+  std::exception_ptr failure;
+  bool finished = true;
+  try {
+    finished = TaskFolder(folder).run(
+        tasks, workers, [] { return stop_flag().load(); }, work);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  display.finish();
+  Json summary;
+  const bool whole = workers.share.all() || options.share.merge;
+  if (whole && ranks.is_first()) summary = summarise_plans(maps, folder);
+  if (failure) std::rethrow_exception(failure);
+  if (!finished) {
+    print_diagnostic("Stopped; the plans made so far are kept. To go on: the same command\n");
+    throw CLI::RuntimeError(128 + stop_signal());
+  }
+  if (!whole) {
+    return print_text(fmt::format("Share {} of {} is done\n", workers.share.index + 1, workers.share.count));
+  }
+  if (!ranks.is_first()) return;
+  if (options.json) {
+    print_json({{"plans", summary}});
+  } else {
+    print_text(fmt::format("Planned {} of {} maps; all in one table: {}\n", summary.size(), maps.size(),
+                           escaped((folder / "summary.csv").string())));
+  }
+  if (summary.size() < maps.size()) throw CLI::RuntimeError(kExitBadInput);
+}
+
+void plan(const PlanOptions& options, const CLI::App& command, Ranks& ranks) {
+  const bool many = asks_for_many(options);
+  ranks.require_same("maps", many ? "a folder" : "one");
+  if (many) return plan_many(options, command, ranks);
+  if (!options.share.task.empty() || options.share.merge) {
+    throw Error({.what = "one plan has no shares", .expected = "a folder of maps and --out FOLDER"});
+  }
+  ranks.on_first([&] { plan_one(options); });
+}
+
 // Those of both commands.
 void add_shared_options(CLI::App& command, PlanOptions& options) {
   command
-      .add_option("map", options.map, "paper:a to paper:j, or a file in any format of `graphdrl maps convert --help`")
+      .add_option("map", options.map,
+                  "paper:a to paper:j, or a file in any format of `graphdrl maps convert --help`; a folder of them, or "
+                  "paper, with --out FOLDER")
       ->required()
       ->type_name("MAP");
   add_text_option(command, "--budget", options.asked.budget, "B",
@@ -147,8 +319,11 @@ void add_shared_options(CLI::App& command, PlanOptions& options) {
 void add_shared_outputs(CLI::App& command, PlanOptions& options) {
   add_text_option(
       command, "--out", options.out, "FILE",
-      "Also write the plan to this file, in the format of its ending: " + plan_file_endings() + "; may be given again");
+      "Also write the plan to this file, in the format of its ending: " + plan_file_endings() +
+          "; may be given again. Of a folder of maps: a folder, for a plan of each, NAME.json, and a table of all, "
+          "summary.csv; the same command again plans what is missing");
   CLI::Option* const json = command.add_flag("--json", options.json, "Print one JSON document");
+  add_share_options(command, options.share);
   command.add_flag("--walk", options.walk, "Print the walk instead of a picture, a node a line, as `check` reads it")
       ->excludes(json);
   add_map_options(command, options.reading);
@@ -180,7 +355,7 @@ void explore_live_with(const PlanOptions& options, const CLI::App& command) {
 
 }  // namespace
 
-void add_plan_command(CLI::App& app) {
+void add_plan_command(CLI::App& app, Ranks& ranks) {
   CLI::App& command = *app.add_subcommand("plan", "Plan one walk, and say how far from the optimum it may be at most");
   const auto options = std::make_shared<PlanOptions>();
   add_shared_options(command, *options);
@@ -198,7 +373,7 @@ void add_plan_command(CLI::App& app) {
       ->type_name("S");
   add_seed_option(command, options->request.seed, "For search and for random policies");
   add_shared_outputs(command, *options);
-  command.callback([options] { plan(*options); });
+  command.callback([options, &command, &ranks] { plan(*options, command, ranks); });
 }
 
 void add_explore_command(CLI::App& app) {
@@ -247,7 +422,7 @@ void add_explore_command(CLI::App& app) {
   command.callback([options, &command] {
     if (options->live.live) return explore_live_with(*options, command);
     if (options->map.empty()) throw CLI::RequiredError("map");
-    plan(*options);
+    plan(*options, command, one_rank());
   });
 }
 

@@ -1,6 +1,7 @@
 #include "graphdrl/cli/program.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -17,7 +18,12 @@
 #include "graphdrl/base/error.h"
 #include "graphdrl/base/note.h"
 #include "graphdrl/base/parallel.h"
+#include "graphdrl/base/ranks.h"
 #include "graphdrl/cli/machine.h"
+#include "graphdrl/io/checked_json.h"
+#include "graphdrl/io/checksum.h"
+#include "graphdrl/io/file.h"
+#include "graphdrl/io/map_source.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/report/progress.h"
 
@@ -29,11 +35,14 @@ constexpr int kJsonIndent = 2;
 constexpr double kQuietS = 1;  // before a bar shows how much of a map is read
 
 std::string program_name;
+std::string complaint;
+constexpr const char* kShortOfMemory = "out of memory\n";  // nothing is allocated for so few characters
 
 int complain(std::string_view message, int status) {
   message = message.substr(0, message.find('\n'));
   const char* const rest = message.size() > kLongestMessage ? " …" : "";
-  print_diagnostic(fmt::format("{}: {}{}\n", program_name, escaped(message.substr(0, kLongestMessage)), rest));
+  complaint = fmt::format("{}: {}{}\n", program_name, escaped(message.substr(0, kLongestMessage)), rest);
+  print_diagnostic(complaint);
   return status;
 }
 
@@ -102,15 +111,25 @@ int run_program(CLI::App& app, int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // and so does writing past the limit on the size of files
   set_threads(hardware_threads());
   listen_to_notes([](const std::string& text) { print_diagnostic(escaped(text) + "\n"); });
-  program_name = app.get_name();
+  name_program(app.get_name());
   end_well_without_memory(program_name.c_str());
   return attempt([&] { parse(app, argc, argv); });
+}
+
+void name_program(const std::string& name) {
+  program_name = name;
+}
+
+const std::string& last_complaint() {
+  return complaint;
 }
 
 int attempt(const std::function<void()>& work) {
   try {
     work();
     return kExitDone;
+  } catch (const RankLost&) {
+    return kExitRankLost;
   } catch (const CLI::RuntimeError& error) {  // a command that chose its own status
     return error.get_exit_code();
   } catch (const CLI::ParseError& error) {
@@ -121,6 +140,7 @@ int attempt(const std::function<void()>& work) {
     return complain(error.what(), kExitBadInput);
   } catch (const std::bad_alloc&) {
     say_out_of_memory();
+    complaint = kShortOfMemory;
     return kExitMachine;
   } catch (const std::filesystem::filesystem_error& error) {
     return complain(fmt::format("{} ({})", error.path1().string(), error.code().message()), kExitBadInput);
@@ -149,6 +169,52 @@ void add_threads_option(CLI::App& command) {
           "Threads to use; results do not depend on it (default: one per processor)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
+}
+
+void add_share_options(CLI::App& command, ShareText& text) {
+  CLI::Option* const task =
+      add_text_option(command, "--task", text.task, "I/N",
+                      "Do the I-th of N shares of the tasks, as 3/20, for arrays of jobs; then --merge");
+  command.add_flag("--merge", text.merge, "Do no task: put together what others did with --task")->excludes(task);
+}
+
+std::string given_options(const CLI::App& command, const std::vector<std::string>& but_for) {
+  std::string given;
+  for (const CLI::Option* const option : command.get_options()) {
+    if (option->count() == 0 || std::ranges::find(but_for, option->get_name()) != but_for.end()) continue;
+    given += fmt::format("{} {}\n", option->get_name(), fmt::join(option->results(), " "));
+  }
+  return given;
+}
+
+Json checksums_of(const std::vector<std::string>& maps, const std::vector<std::string>& others) {
+  Json sums = Json::object();
+  const auto add = [&](const std::string& file) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(file, error)) sums[file] = checksum({read_file(file)});
+  };
+  for (const std::string& source : maps) {
+    for (const std::string& map : map_sources(source)) add(map);
+  }
+  for (const std::string& file : others) add(file);
+  return sums;
+}
+
+void require_none_left_out(const TaskFolder& folder) {
+  if (folder.left_out_count() > 0) throw CLI::RuntimeError(kExitBadInput);
+}
+
+void claim_folder(const std::filesystem::path& folder, const std::string& name, const Json& origin, Ranks& ranks) {
+  const std::filesystem::path file = folder / (name + ".json");
+  ranks.on_first([&] {
+    prepare_folder(folder);
+    if (!std::filesystem::exists(file)) return write_checked_json(file, origin);
+    if (read_checked_json(file) == origin) return;
+    throw Error({.what = "the folder holds results of other options or files",
+                 .expected = "a new folder, or the same command again",
+                 .where = folder.string()});
+  });
+  ranks.require_same("files in " + folder.string(), std::filesystem::exists(file) ? "seen" : "");
 }
 
 void add_cover_options(CLI::App& command, CoverText& text) {

@@ -3,13 +3,16 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "graphdrl/base/ranks.h"
 #include "graphdrl/io/any_map.h"
+#include "graphdrl/io/task_folder.h"
 
 namespace graphdrl {
 
@@ -19,12 +22,19 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitOurFault = 1;
 inline constexpr int kExitBadInput = 2;
 inline constexpr int kExitMachine = 3;       // the machine refused: disk, memory, threads
+inline constexpr int kExitRankLost = -1;     // another rank has failed, and says so
 inline constexpr int kExitClosedPipe = 141;  // as a shell says of a program that SIGPIPE ended
 
 inline constexpr int kMostPort = 65535;  // of TCP
 
 // Parses the arguments, which runs the chosen command's callback; gives the exit status.
 int run_program(CLI::App& app, int argc, char** argv);
+
+// How complaints begin from now on. run_program() does it.
+void name_program(const std::string& name);
+
+// What the last complaint was; empty where there was none.
+const std::string& last_complaint();
 
 // Does the work; gives the exit status. Turns any exception into one line on standard error.
 int attempt(const std::function<void()>& work);
@@ -46,6 +56,31 @@ struct CoverText {
   std::string cover = "nodes";
   std::optional<double> reset_cost = {};  // where edges count
 };
+
+// Which of many tasks a process does, as users say it.
+struct ShareText {
+  std::string task;
+  bool merge = false;
+
+  // None of those to be merged. Throws Error on a bad share.
+  TaskShare share() const { return merge ? TaskShare::none() : task.empty() ? TaskShare() : parse_task_share(task); }
+};
+
+// Adds --task and --merge.
+void add_share_options(CLI::App& command, ShareText& text);
+
+// The options given, but for these, a line each.
+std::string given_options(const CLI::App& command, const std::vector<std::string>& but_for);
+
+// Checksums of the files behind maps and policies, by their names; of what is no file there is none.
+Json checksums_of(const std::vector<std::string>& maps, const std::vector<std::string>& others);
+
+// Ends with status 2 where tasks of a folder were left out, which were named.
+void require_none_left_out(const TaskFolder& folder);
+
+// A folder of results that all come from the same options and files: notes what they come from in FOLDER/NAME.json, or
+// throws Error where it holds results of others. Collective: the first rank writes.
+void claim_folder(const std::filesystem::path& folder, const std::string& name, const Json& origin, Ranks& ranks);
 
 // Adds --cover and --reset-cost.
 void add_cover_options(CLI::App& command, CoverText& text);

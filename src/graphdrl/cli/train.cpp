@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/note.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/machine.h"
 #include "graphdrl/cli/program.h"
@@ -26,6 +27,7 @@
 namespace graphdrl {
 namespace {
 
+constexpr auto kReplaceBadText = Json::error_handler_t::replace;
 constexpr const char* kTorchProgram = "graphdrl-train";
 
 // `train` is what graphdrl-train does unless it is told `tune`.
@@ -73,6 +75,7 @@ struct TrainCommand {
   std::string out;
   std::string resume;
   bool break_lock = false;
+  ShareText share;
   bool json = false;
 };
 
@@ -173,8 +176,36 @@ void train(Trainer& trainer, bool json) {
                          escaped(trainer.run_directory().policy().string())));
 }
 
-// The same of many seeds.
-void train(SeedRuns& seeds, const LearnerSource& learners, bool json) {
+// Of many seeds: those that are trained, and what is lacking.
+void report_seeds(SeedRuns& seeds, bool json) {
+  SideBySide& trainings = seeds.trainings();
+  const TrainingUnits& units = trainings.units();
+  Json reports = Json::array();
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < trainings.runs().size(); ++i) {
+    const PlannedRun& run = trainings.runs()[i];
+    if (!trainings.is_trained(i)) {
+      if (!trainings.is_left_out(i)) {
+        throw Error({.what = "not trained yet", .where = run.directory.path().string()});
+      }
+      ++left_out;
+      continue;
+    }
+    reports.push_back({{"seed", run.options.seed}});
+    reports.back().update(report_of(run.directory, trainings.progress()[i], units));
+  }
+  if (json) {
+    print_json({{"runs", reports}});
+  } else if (!reports.empty()) {
+    print_text(fmt::format("Trained {} seeds, {} {}s each. The runs: {} to {}\n", reports.size(), units.count,
+                           units.name, escaped(reports.front()["run"].get<std::string>()),
+                           escaped(reports.back()["run"].get<std::string>())));
+  }
+  if (left_out > 0) throw CLI::RuntimeError(kExitBadInput);
+}
+
+// The same as train(), of many seeds.
+void train(SeedRuns& seeds, const LearnerSource& learners, const TaskWorkers& workers, bool json) {
   SideBySide& trainings = seeds.trainings();
   const TrainingUnits& units = trainings.units();
   std::int64_t before = 0;
@@ -195,25 +226,18 @@ void train(SeedRuns& seeds, const LearnerSource& learners, bool json) {
                                                                  news.samples_per_s, units.samples),
                                                      last);
                                       },
-                                      learners);
+                                      learners, workers);
   display.finish();
   if (!finished) leave_stopped(fmt::format("{} of {} seeds", seeds_done, count), seeds.folder().string());
-  Json reports = Json::array();
-  for (std::size_t i = 0; i < count; ++i) {
-    const PlannedRun& run = trainings.runs()[i];
-    reports.push_back({{"seed", run.options.seed}});
-    reports.back().update(report_of(run.directory, trainings.progress()[i], units));
-  }
-  if (json) return print_json({{"runs", reports}});
-  print_text(fmt::format("Trained {} seeds, {} {}s each. The runs: {} to {}\n", count, units.count, units.name,
-                         escaped(reports.front()["run"].get<std::string>()),
-                         escaped(reports.back()["run"].get<std::string>())));
+  if (workers.share.all()) return report_seeds(seeds, json);
+  print_text(fmt::format("Share {} of {} is done\n", workers.share.index + 1, workers.share.count));
 }
 
 // The parser of the arguments after `train`, and what they say.
 class TrainProgram {
  public:
-  explicit TrainProgram(const LearnerSource& learners) : learners_(learners), flags_(app_, command_.given) {
+  TrainProgram(const LearnerSource& learners, Ranks& ranks)
+      : learners_(learners), ranks_(ranks), flags_(app_, command_.given) {
     add_text_option(app_, "--seeds", command_.seeds, "SEEDS",
                     "Independent runs of many seeds, as 1-8 or 1,4,7-9, each in RUN/seed-N: on the cpu one a thread, "
                     "each with the bytes that it would have alone; on cuda all together");
@@ -224,6 +248,7 @@ class TrainProgram {
     app_.add_flag("--break-lock", command_.break_lock,
                   "With --resume: go on at once though a trainer on another host held the run in the last minute")
         ->needs(resume_);
+    add_share_options(app_, command_.share);
     app_.add_flag("--json", command_.json, "Print one JSON document when done");
     add_threads_option(app_);
     add_memory_limit_option(app_);
@@ -245,23 +270,57 @@ class TrainProgram {
                      .expected = "the options that the run was started with",
                      .where = command_.resume});
       }
-      if (command_.break_lock) break_locks(command_.resume);
-      if (SeedRuns::are_in(command_.resume)) {
+      if (command_.break_lock) ranks_.on_first([&] { break_locks(command_.resume); });
+      const bool many = SeedRuns::are_in(command_.resume);
+      ranks_.require_same("files in " + command_.resume, many ? "many runs" : "one");
+      if (many) {
         SeedRuns runs = SeedRuns::resume(command_.resume);
-        return train(runs, learners_, command_.json);
+        return train_seeds(runs);
       }
-      return train(*Trainer::resume(RunDirectory(command_.resume), learners_), command_.json);
+      require_no_share();
+      const RunDirectory run(command_.resume);
+      return train_together(ranks_.alone() ? TrainOptions() : Trainer::options_of(run),
+                            [&](Ranks& ranks) { train(*Trainer::resume(run, learners_, ranks), command_.json); });
     }
     const TrainOptions options = flags_.resolve();
+    command_.share.share();  // throws Error on a bad one
+    if (!ranks_.alone()) {
+      const bool reads_maps = options.preset == kPaperPreset;
+      const Json files = checksums_of(reads_maps ? options.maps : std::vector<std::string>(), {});
+      ranks_.require_same("options or maps", config_text(options) + files.dump(-1, ' ', false, kReplaceBadText));
+    }
     const std::string out = command_.out.empty() ? "runs/" + options.preset : command_.out;
     if (!command_.seeds.empty()) {
-      SeedRuns runs = SeedRuns::start(options, parse_seeds(command_.seeds), out, learners_);
-      return train(runs, learners_, command_.json);
+      SeedRuns runs = SeedRuns::start(options, parse_seeds(command_.seeds), out, learners_, ranks_);
+      return train_seeds(runs);
     }
-    train(*Trainer::start(options, RunDirectory(out), learners_), command_.json);
+    require_no_share();
+    train_together(options, [&](Ranks& ranks) {
+      train(*Trainer::start(options, RunDirectory(out), learners_, {}, ranks), command_.json);
+    });
+  }
+
+  void train_seeds(SeedRuns& runs) {
+    if (command_.share.merge) return report_seeds(runs, command_.json);
+    train(runs, learners_, {.ranks = ranks_, .share = command_.share.share()}, command_.json);
+  }
+
+  void require_no_share() const {
+    if (command_.share.task.empty() && !command_.share.merge) return;
+    throw Error({.what = "one training has no shares", .expected = "--seeds with --task and --merge"});
+  }
+
+  // Many ranks share the explorer's training. That of the paper would change by its last digits, and is one rank's.
+  void train_together(const TrainOptions& options, const std::function<void(Ranks&)>& train) {
+    if (ranks_.alone() || options.preset == kExplorerPreset) return train(ranks_);
+    ranks_.on_first([&] {
+      note("one training of the preset paper is the work of one rank; --seeds gives work to all");
+      train(one_rank());
+    });
   }
 
   const LearnerSource& learners_;
+  Ranks& ranks_;
   CLI::App app_{
       "Train a policy, and write a run directory with all that is needed to use it, watch it and go on with it.",
       "graphdrl train"};
@@ -273,20 +332,20 @@ class TrainProgram {
 
 }  // namespace
 
-void add_train_command(CLI::App& app, const LearnerSource& learners) {
+void add_train_command(CLI::App& app, const LearnerSource& learners, Ranks& ranks) {
   CLI::App* const command =
       app.add_subcommand("train", "Train a policy, and write a run directory (train --help has the options)");
   // It has a parser of its own: CLI11 reads configuration files for whole programs only.
   command->prefix_command();
   command->set_help_flag();
-  command->callback([command, &learners] {
-    const int status = run_train_command(command->remaining(), learners);
+  command->callback([command, &learners, &ranks] {
+    const int status = run_train_command(command->remaining(), learners, ranks);
     if (status != kExitDone) throw CLI::RuntimeError(status);
   });
 }
 
-int run_train_command(const std::vector<std::string>& arguments, const LearnerSource& learners) {
-  TrainProgram program(learners);
+int run_train_command(const std::vector<std::string>& arguments, const LearnerSource& learners, Ranks& ranks) {
+  TrainProgram program(learners, ranks);
   std::vector<const char*> argv = {"graphdrl train"};
   for (const std::string& argument : arguments) argv.push_back(argument.c_str());
   return run_program(program.app(), static_cast<int>(argv.size()), const_cast<char**>(argv.data()));
@@ -310,7 +369,7 @@ std::vector<std::unique_ptr<LearnerSource>> CpuOrTorchProgram::make_together(con
 }
 
 void visit_train_options(const std::function<void(const CLI::App&)>& visit) {
-  visit(TrainProgram(kCpuLearners).app());
+  visit(TrainProgram(kCpuLearners, one_rank()).app());
 }
 
 }  // namespace graphdrl

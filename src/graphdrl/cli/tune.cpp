@@ -20,6 +20,7 @@ struct TuneCommand {
   std::string out = "runs/tune";
   std::string resume;
   bool break_lock = false;
+  ShareText share;
   bool json = false;
 };
 
@@ -84,11 +85,13 @@ std::string to_text(const Tuning& tuning) {
   return text;
 }
 
-void tune(TuneCommand command, const LearnerSource& learners) {
+void tune(TuneCommand command, const LearnerSource& learners, Ranks& ranks) {
   command.options.rounds = parse_rounds(command.rounds);
   const std::string folder = command.resume.empty() ? command.out : command.resume;
-  if (command.break_lock) break_locks(folder);
-  Tuning tuning = command.resume.empty() ? Tuning::start(command.options, folder, learners) : Tuning::resume(folder);
+  if (command.break_lock) ranks.on_first([&] { break_locks(folder); });
+  const TaskShare share = command.share.share();
+  Tuning tuning =
+      command.resume.empty() ? Tuning::start(command.options, folder, learners, ranks) : Tuning::resume(folder, ranks);
   catch_stop_signals();
   ProgressDisplay display("round");
   const bool finished = tuning.run(
@@ -98,20 +101,33 @@ void tune(TuneCommand command, const LearnerSource& learners) {
                                              tuning.options().rounds.size(), news.runs_done, news.samples_per_s);
         display.show_line(line, static_cast<double>(news.units_done) / static_cast<double>(news.units));
       },
-      learners);
+      learners, {.ranks = ranks, .share = share});
   display.finish();
+  if (!finished && command.share.merge && stop_signal() == 0) {
+    throw Error({.what = fmt::format("round {} is not whole yet", tuning.scores().size() + 1),
+                 .expected = "all shares of it done by --task",
+                 .where = folder});
+  }
+  if (!command.share.task.empty() && stop_signal() == 0) {
+    return print_text(fmt::format("Share {} of {} is done{}\n", share.index + 1, share.count,
+                                  finished ? "" : ", in this round; the same command begins the next one"));
+  }
   if (!finished) {
     print_diagnostic(
         fmt::format("Stopped; everything is saved. To go on:\n  graphdrl tune --resume {}\n", escaped(folder)));
     throw CLI::RuntimeError(128 + stop_signal());
   }
-  if (command.json) return print_json(to_json(tuning));
-  print_text(to_text(tuning));
+  if (command.json) {
+    print_json(to_json(tuning));
+  } else {
+    print_text(to_text(tuning));
+  }
+  require_none_left_out(TaskFolder(folder));
 }
 
 }  // namespace
 
-void add_tune_command(CLI::App& app, const LearnerSource& learners) {
+void add_tune_command(CLI::App& app, const LearnerSource& learners, Ranks& ranks) {
   CLI::App& command = *app.add_subcommand(
       "tune",
       "Search for better hyper-parameters of the paper's training, by successive halving over settings and seeds");
@@ -144,10 +160,11 @@ void add_tune_command(CLI::App& app, const LearnerSource& learners) {
       .add_flag("--break-lock", options->break_lock,
                 "With --resume: go on at once though a trainer on another host held a run in the last minute")
       ->needs(resume);
+  add_share_options(command, options->share);
   command.add_flag("--json", options->json, "Print one JSON document");
   add_threads_option(command);
   add_memory_limit_option(command);
-  command.callback([options, &learners] { tune(*options, learners); });
+  command.callback([options, &learners, &ranks] { tune(*options, learners, ranks); });
 }
 
 }  // namespace graphdrl

@@ -159,6 +159,10 @@ std::span<const WorldFamily> world_families() {
   return kFamilies;
 }
 
+std::int64_t WorldSpec::most_nodes() const {
+  return family_of(*this).grid ? std::int64_t{size} * size : size;
+}
+
 std::string WorldSpec::name() const {
   return fmt::format("{}-{}{}{}", family, size, weighted ? "-weighted" : "", directed ? "-directed" : "");
 }

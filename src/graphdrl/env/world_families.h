@@ -1,6 +1,7 @@
 // Families of random worlds, and their frozen splits for training, validation and test.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,7 +32,8 @@ struct WorldSpec {
   // left free, however small.
   std::optional<double> blocked = {};
 
-  std::string name() const;  // "maze-11", "tree-50-weighted-directed"; without the share
+  std::int64_t most_nodes() const;  // cells of a grid. Throws Error on an unknown family
+  std::string name() const;         // "maze-11", "tree-50-weighted-directed"; without the share
 };
 
 // Throws Error as random_world().

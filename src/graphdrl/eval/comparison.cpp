@@ -1,13 +1,15 @@
 #include "graphdrl/eval/comparison.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 
 #include "graphdrl/base/error.h"
-#include "graphdrl/base/parallel.h"
 #include "graphdrl/base/random.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/eval/rollout.h"
@@ -16,6 +18,8 @@
 
 namespace graphdrl {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // The paper, Table 2: environments a to j.
 constexpr std::array<PaperResult, 10> kPaperTable2 = {{{89.8, 8.3, 100.0},
@@ -105,8 +109,11 @@ std::optional<KnownResult> known_result(const World& world, const Task& task, co
   return KnownResult{options.until_covered ? plan.cost : world.percent_of_all(plan.prize), /*optimal=*/false};
 }
 
-// Fills in what is known of the optimum.
-void solve(Arena& arena, const ComparisonOptions& options, const Clock& clock) {
+constexpr const char* kOptimumKey = "optimum";
+constexpr const char* kKnownKey = "known";
+
+// What is known of the optimum: its mean over the starts, and what is known of each; nothing where one is out of reach.
+Json solve(const Arena& arena, const ComparisonOptions& options, const Clock& clock) {
   std::map<NodeId, std::optional<KnownResult>> by_start;
   Task task = arena.task;
   std::vector<double> values;
@@ -117,15 +124,21 @@ void solve(Arena& arena, const ComparisonOptions& options, const Clock& clock) {
       task.start_at(start);
       result->second = known_result(arena.world, task, options, clock);
     }
-    if (!result->second) return;
+    if (!result->second) return nullptr;
     values.push_back(result->second->value);
     optimal = optimal && result->second->optimal;
   }
+  Json solved = Json::object();
   if (optimal) {
-    arena.optimum = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    solved[kOptimumKey] = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   }
-  if (!options.reveal.all()) arena.known = std::move(values);
+  if (!options.reveal.all()) solved[kKnownKey] = values;
+  return solved;
 }
+
+// Results by task; nothing where those of other shares are lacking. Failed ones are empty.
+using Tasks = std::function<std::optional<std::vector<Json>>(const std::vector<std::string>& names,
+                                                             const std::function<Json(int task)>& compute)>;
 
 // Throws Error on options that do not go together.
 void check_options(const std::vector<World>& worlds, const ComparisonOptions& options) {
@@ -173,7 +186,7 @@ std::vector<NodeId> draw_starts(const World& world, const ComparisonOptions& opt
   return starts;
 }
 
-std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock) {
+std::vector<Arena> make_arenas(const std::vector<World>& worlds, const ComparisonOptions& options) {
   std::vector<Arena> arenas;
   for (const World& world : worlds) {
     Asked asked{.budget = options.budget};
@@ -188,7 +201,6 @@ std::vector<Arena> make_arenas(const std::vector<World>& worlds, const Compariso
     }
     arenas.push_back({.world = world, .task = task, .starts = starts});
   }
-  parallel_for(static_cast<int>(arenas.size()), [&](int i) { solve(arenas[i], options, clock); });
   return arenas;
 }
 
@@ -227,52 +239,73 @@ std::vector<Block> make_blocks(const std::vector<Arena>& arenas, const std::vect
 // Percents or costs, by policy, map and episode; an empty one where a policy's search is out of reach.
 using Results = std::vector<std::vector<std::vector<double>>>;
 
-Results measure(const std::vector<Arena>& arenas, const std::vector<Contender>& contenders,
-                const ComparisonOptions& options, const Clock& clock) {
+// The values of a block's episodes; null where the policy's search is out of reach.
+Json measure_block(const Block& block, const Arena& arena, const Contender& contender, const ComparisonOptions& options,
+                   const Clock& clock) {
+  const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
+  const std::uint64_t block_seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0]));
+  Json values = Json::array();
+  if (options.counts_edges()) {
+    for (const int episode : block.episodes) {
+      Task task = arena.task;
+      task.start_at(arena.starts[episode]);
+      const std::uint64_t seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(episode));
+      const auto [percent, cost] = options.cover_edges(arena.world, task, contender.label, seed);
+      values.push_back(options.until_covered ? cost : percent);
+    }
+    return values;
+  }
+  const auto believed = options.believed.empty() ? nullptr : options.believed[block.map];
+  const auto policy = contender.make(block_seed, believed);
+  std::vector<NodeId> starts;
+  for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
+  try {
+    const EpisodeOptions walks{
+        .action_space = options.reveal.all() ? action_space_of(arena.world) : ActionSpace::kNeighbours,
+        .reveal = options.reveal,
+        .score = options.score,
+        .believed = believed,
+        .numbers_seed = map_seed};
+    for (const auto& result :
+         roll_out(Episode(arena.world, arena.task, walks), starts, *policy, clock, block.episodes)) {
+      values.push_back(options.until_covered ? result.cost : arena.world.percent_of_all(result.prize));
+    }
+  } catch (const SearchOutOfReach&) {
+    return nullptr;
+  }
+  return values;
+}
+
+// Nothing where results of other shares are lacking.
+std::optional<Results> measure(std::vector<Arena>& arenas, const std::vector<Contender>& contenders,
+                               const ComparisonOptions& options, const Tasks& do_tasks, const Clock& clock) {
+  const std::vector<Block> blocks = make_blocks(arenas, contenders);
+  std::vector<std::string> names;
+  for (std::size_t map = 0; map < arenas.size(); ++map) names.push_back(fmt::format("known-{:05}", map));
+  for (std::size_t b = 0; b < blocks.size(); ++b) names.push_back(fmt::format("episodes-{:06}", b));
+  const auto results = do_tasks(names, [&](int task) {
+    if (task < std::ssize(arenas)) return solve(arenas[task], options, clock);
+    const Block& block = blocks[task - arenas.size()];
+    return measure_block(block, arenas[block.map], contenders[block.policy], options, clock);
+  });
+  if (!results) return std::nullopt;
+  for (std::size_t map = 0; map < arenas.size(); ++map) {
+    const Json& solved = (*results)[map];
+    if (solved.contains(kOptimumKey)) arenas[map].optimum = solved[kOptimumKey];
+    if (solved.contains(kKnownKey)) arenas[map].known = solved[kKnownKey].get<std::vector<double>>();
+  }
   Results measured(contenders.size(), std::vector<std::vector<double>>(arenas.size()));
   for (auto& of_policy : measured) {
     for (std::size_t map = 0; map < arenas.size(); ++map) of_policy[map].resize(arenas[map].starts.size());
   }
-  const std::vector<Block> blocks = make_blocks(arenas, contenders);
-  std::vector<std::uint8_t> out_of_reach(blocks.size());
-  parallel_for(static_cast<int>(blocks.size()), [&](int b) {
-    const Block& block = blocks[b];
-    const Arena& arena = arenas[block.map];
-    const std::uint64_t map_seed = derive_seed(options.seed, kPolicySeeds, static_cast<std::uint64_t>(block.map));
-    const std::uint64_t block_seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(block.episodes[0]));
-    if (options.counts_edges()) {
-      for (const int episode : block.episodes) {
-        Task task = arena.task;
-        task.start_at(arena.starts[episode]);
-        const std::uint64_t seed = derive_seed(map_seed, kBlockSeeds, static_cast<std::uint64_t>(episode));
-        const auto [percent, cost] = options.cover_edges(arena.world, task, contenders[block.policy].label, seed);
-        measured[block.policy][block.map][episode] = options.until_covered ? cost : percent;
-      }
-      return;
-    }
-    const auto believed = options.believed.empty() ? nullptr : options.believed[block.map];
-    const auto policy = contenders[block.policy].make(block_seed, believed);
-    std::vector<NodeId> starts;
-    for (const int episode : block.episodes) starts.push_back(arena.starts[episode]);
-    try {
-      const EpisodeOptions walks{
-          .action_space = options.reveal.all() ? action_space_of(arena.world) : ActionSpace::kNeighbours,
-          .reveal = options.reveal,
-          .score = options.score,
-          .believed = believed,
-          .numbers_seed = map_seed};
-      const auto results = roll_out(Episode(arena.world, arena.task, walks), starts, *policy, clock, block.episodes);
-      for (std::size_t i = 0; i < results.size(); ++i) {
-        measured[block.policy][block.map][block.episodes[i]] =
-            options.until_covered ? results[i].cost : arena.world.percent_of_all(results[i].prize);
-      }
-    } catch (const SearchOutOfReach&) {
-      out_of_reach[b] = 1;
-    }
-  });
+  std::vector<const Block*> lacking;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    if (out_of_reach[b] != 0) measured[blocks[b].policy][blocks[b].map].clear();
+    const Json& values = (*results)[arenas.size() + b];
+    const Block& block = blocks[b];
+    if (values.is_null()) lacking.push_back(&block);
+    for (std::size_t i = 0; i < values.size(); ++i) measured[block.policy][block.map][block.episodes[i]] = values[i];
   }
+  for (const Block* const block : lacking) measured[block->policy][block->map].clear();
   return measured;
 }
 
@@ -369,10 +402,18 @@ double price_of_ignorance(double known, double unknown, bool costs) {
 }
 
 Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock) {
+  return compare(worlds, options, {}, nullptr, clock).value();
+}
+
+std::optional<Comparison> compare(const std::vector<World>& worlds, const ComparisonOptions& options,
+                                  const TaskWorkers& workers, const TaskFolder* folder, const Clock& clock) {
   check_options(worlds, options);
   const std::vector<Contender> contenders = make_contenders(options);
-  const std::vector<Arena> arenas = make_arenas(worlds, options, clock);
-  const Results results = measure(arenas, contenders, options, clock);
+  std::vector<Arena> arenas = make_arenas(worlds, options);
+  const auto do_tasks = [&](const auto& names, const auto& work) { return results_of(names, folder, workers, work); };
+  const std::optional<Results> measured = measure(arenas, contenders, options, do_tasks, clock);
+  if (!measured) return std::nullopt;
+  const Results& results = *measured;
   Comparison comparison{.options = options, .rows = {}, .overall = {}, .families = {}};
   for (std::size_t policy = 0; policy < contenders.size(); ++policy) {
     const std::string& label = contenders[policy].label;

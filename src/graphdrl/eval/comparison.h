@@ -13,6 +13,7 @@
 #include "graphdrl/env/task.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/eval/statistics.h"
+#include "graphdrl/io/task_folder.h"
 #include "graphdrl/planners/plan.h"
 
 namespace graphdrl {
@@ -117,6 +118,12 @@ struct Comparison {
 // Grids are walked in directions, other worlds by neighbours. Once the clock passes, episodes end where they are.
 // Throws Error on a bad policy or option.
 Comparison compare(const std::vector<World>& worlds, const ComparisonOptions& options, const Clock& clock = {});
+
+// The same over ranks, or a share of it; results are kept in a folder, if there is one, and computed once. Nothing
+// where results of other shares are lacking. Rows lack a coverage where a task failed too often. Throws Error as
+// TaskFolder::run(), too. Collective.
+std::optional<Comparison> compare(const std::vector<World>& worlds, const ComparisonOptions& options,
+                                  const TaskWorkers& workers, const TaskFolder* folder, const Clock& clock = {});
 
 // The comparison as a text: a table per policy, and a line per policy over all maps.
 std::string format_comparison(const Comparison& comparison);

@@ -99,7 +99,7 @@ NamedMap paper_map(char letter, const MapOptions& options) {
   return named;
 }
 
-std::vector<NamedMap> folder_maps(const std::filesystem::path& folder, const MapOptions& options) {
+std::vector<std::string> files_of(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -115,33 +115,43 @@ std::vector<NamedMap> folder_maps(const std::filesystem::path& folder, const Map
   std::erase_if(files, [&](std::filesystem::path file) {
     return (file.extension() == ".pgm" || file.extension() == ".png") && all.contains(file.replace_extension(".yaml"));
   });
-  std::vector<NamedMap> maps;
-  maps.reserve(files.size());
-  for (const auto& file : files) maps.push_back(file_map(file, options));
-  return maps;
+  return {files.begin(), files.end()};
 }
 
-}  // namespace
-
-std::vector<NamedMap> load_maps(const std::string& source, const MapOptions& options) {
-  std::vector<NamedMap> maps;
-  if (source == "paper") {
-    for (const char letter : kPaperLetters) maps.push_back(paper_map(letter, options));
-    return maps;
-  }
+NamedMap one_map(const std::string& source, const MapOptions& options) {
   if (source.starts_with("paper:")) {
     const std::string_view letter = std::string_view(source).substr(6);
     if (letter.size() != 1 || kPaperLetters.find(letter) == std::string_view::npos) {
       throw Error({.what = "no such map", .expected = "paper:a to paper:j", .got = in_quotes(source)});
     }
-    return {paper_map(letter.front(), options)};
+    return paper_map(letter.front(), options);
   }
   std::error_code error;
-  if (std::filesystem::is_directory(source, error)) return folder_maps(source, options);
-  if (std::filesystem::exists(source, error)) return {file_map(source, options)};
+  if (std::filesystem::exists(source, error)) return file_map(source, options);
   throw Error({.what = "no such map",
                .expected = "paper, paper:a to paper:j, a file or a folder of files",
                .got = in_quotes(source, 200)});
+}
+
+}  // namespace
+
+std::vector<std::string> map_sources(const std::string& source) {
+  std::vector<std::string> sources;
+  std::error_code error;
+  if (source == "paper") {
+    for (const char letter : kPaperLetters) sources.push_back(std::string("paper:") + letter);
+  } else if (std::filesystem::is_directory(source, error)) {
+    sources = files_of(source);
+  } else {
+    sources.push_back(source);
+  }
+  return sources;
+}
+
+std::vector<NamedMap> load_maps(const std::string& source, const MapOptions& options) {
+  std::vector<NamedMap> maps;
+  for (const std::string& one : map_sources(source)) maps.push_back(one_map(one, options));
+  return maps;
 }
 
 NamedMap load_map(const std::string& source, const MapOptions& options) {

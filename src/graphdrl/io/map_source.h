@@ -14,9 +14,14 @@ struct NamedMap {
   AnyMap map;
 };
 
-// `paper:a` … `paper:j`, `paper` (all ten), a file, or a folder of files (read in order of name; hidden ones are
-// skipped, and so is the picture of a ROS map), in any format of map_formats(). Throws Error where nothing can be read
-// under that name, and where an option has no meaning for the map. A file called `paper` is reachable as `./paper`.
+// The sources of one map each that a source stands for: those of `paper`, and the files of a folder in order of name;
+// hidden ones are skipped, and so is the picture of a ROS map. Any other is its own. Throws Error on a folder that has
+// none or cannot be read.
+std::vector<std::string> map_sources(const std::string& source);
+
+// `paper:a`, `paper` (all ten), a file, or a folder of files, in any format of map_formats(). Throws Error where
+// nothing can be read under that name, and where an option has no meaning for the map. A file called `paper` is
+// reachable as `./paper`.
 std::vector<NamedMap> load_maps(const std::string& source, const MapOptions& options = {});
 
 // As load_maps, for a source that must hold exactly one map.

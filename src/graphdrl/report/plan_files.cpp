@@ -32,12 +32,6 @@ std::string dumped(const Json& document) {
   return document.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-// A field of CSV [RFC 4180].
-std::string csv(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
-}
-
 std::string plan_csv(const Answer& answer) {
   const World& world = answer.world;
   const bool labels = !world.labels().empty();
@@ -56,7 +50,7 @@ std::string plan_csv(const Answer& answer) {
     if (!seen[node]) ++visited;
     seen[node] = true;
     text += fmt::format("{},{}", step, node);
-    if (labels) text += fmt::format(",{}", csv(world.labels()[node]));
+    if (labels) text += fmt::format(",{}", csv_field(world.labels()[node]));
     if (cells) text += fmt::format(",{},{}", world.map()->cell(node).row, world.map()->cell(node).col);
     if (places) text += fmt::format(",{},{}", world.place(node).x, world.place(node).y);
     text += fmt::format(",{},{}\n", costs[step], visited);
@@ -170,11 +164,16 @@ const PlanFormat& format_for(const std::string& file) {
 
 }  // namespace
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  return '"' + boost::replace_all_copy(text, "\"", "\"\"") + '"';
+}
+
 std::string format_walk(const World& world, std::span<const NodeId> walk) {
   const bool labels = !world.labels().empty();
   std::string text = labels ? "node,label\n" : "node\n";
   for (const NodeId node : walk) {
-    text += labels ? fmt::format("{},{}\n", node, csv(escaped(world.labels()[node]))) : fmt::format("{}\n", node);
+    text += labels ? fmt::format("{},{}\n", node, csv_field(escaped(world.labels()[node]))) : fmt::format("{}\n", node);
   }
   return text;
 }

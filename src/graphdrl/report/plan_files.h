@@ -28,6 +28,9 @@ void check_plan_file(const World& world, const std::string& file);
 // Writes a plan in the format of the file's ending. Throws Error.
 void write_plan(const Answer& answer, const std::string& file);
 
+// A field of CSV [RFC 4180].
+std::string csv_field(const std::string& text);
+
 // The endings, for help texts.
 std::string plan_file_endings();
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "graphdrl/base/parallel.h"
+#include "graphdrl/train/minibatch.h"
+
 namespace graphdrl {
 namespace {
 
@@ -92,39 +95,57 @@ double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, s
   return loss;
 }
 
-ExplorerLearner::ExplorerLearner(double ranking, Rng& rng)
-    : ranking_(ranking), parameters_(rng), adam_(parameters_.values().size()) {
-  network_.set_parameters(parameters_);
-}
+ExplorerLearner::ExplorerLearner(double ranking, Rng& rng, Ranks& ranks)
+    : ranking_(ranking), ranks_(ranks), parameters_(rng), adam_(parameters_.values().size()) {}
 
 void ExplorerLearner::set_state(const ExplorerParameters& parameters, AdamState adam) {
   parameters_ = parameters;
   adam_ = std::move(adam);
-  network_.set_parameters(parameters_);
 }
 
 double ExplorerLearner::learn(std::span<const Lesson* const> lessons, double rate) {
-  batch_.clear();
-  label_.clear();
+  workers_.resize(static_cast<std::size_t>(threads()));
+  for (Worker& worker : workers_) worker.network.set_parameters(parameters_);
+  const std::size_t count = parameters_.values().size();
+  sum_.resize(count + 2);
+  sum_over_minibatch(
+      ranks_, static_cast<int>(lessons.size()),
+      [&](int worker, int begin, int end, std::span<float> sum) {
+        const double share = static_cast<double>(end - begin) / static_cast<double>(lessons.size());
+        const auto [loss, regret] = compute_gradient(lessons.subspan(begin, end - begin), share, workers_[worker]);
+        std::ranges::copy(std::as_const(workers_[worker].grad).values(), sum.begin());
+        sum[count] = static_cast<float>(loss);
+        sum[count + 1] = static_cast<float>(regret);
+      },
+      sum_);
+  regret_ = sum_[count + 1];
+  adam_.step(std::span(sum_).first(count), rate, parameters_.values());
+  return sum_[count];
+}
+
+// share: of the minibatch.
+ExplorerLearner::Losses ExplorerLearner::compute_gradient(std::span<const Lesson* const> lessons, double share,
+                                                          Worker& worker) const {
+  auto& [network, scratch, batch, grad, label, shortfall, grad_shortfall] = worker;
+  batch.clear();
+  label.clear();
   for (const Lesson* const lesson : lessons) {
-    lesson->append_to(batch_, scratch_);
-    label_.insert(label_.end(), lesson->shortfall.begin(), lesson->shortfall.end());
+    lesson->append_to(batch, scratch);
+    label.insert(label.end(), lesson->shortfall.begin(), lesson->shortfall.end());
   }
-  shortfall_.resize(label_.size());
-  grad_shortfall_.resize(label_.size());
-  network_.forward(batch_, shortfall_, /*keep=*/true);
-  const double loss = explorer_loss(batch_, label_, shortfall_, ranking_, grad_shortfall_);
-  regret_ = 0;
-  for_each_state(batch_, label_, shortfall_, [&](const Labelled& state) {
+  shortfall.resize(label.size());
+  grad_shortfall.resize(label.size());
+  network.forward(batch, shortfall, /*keep=*/true);
+  Losses losses{.loss = share * explorer_loss(batch, label, shortfall, ranking_, grad_shortfall), .regret = 0};
+  for (float& slope : grad_shortfall) slope *= static_cast<float>(share);
+  for_each_state(batch, label, shortfall, [&, &all_shortfall = shortfall, &all_label = label](const Labelled& state) {
     const std::size_t choice =
         *std::min_element(state.visits.begin(), state.visits.end(),
-                          [&](std::size_t a, std::size_t b) { return shortfall_[a] < shortfall_[b]; });
-    regret_ += (label_[choice] - state.least_label) / static_cast<double>(lessons.size());
+                          [&](std::size_t a, std::size_t b) { return all_shortfall[a] < all_shortfall[b]; });
+    losses.regret += share * (all_label[choice] - state.least_label) / static_cast<double>(lessons.size());
   });
-  network_.backward(batch_, grad_shortfall_, grad_);
-  adam_.step(grad_.values(), rate, parameters_.values());
-  network_.set_parameters(parameters_);
-  return loss;
+  network.backward(batch, grad_shortfall, grad);
+  return losses;
 }
 
 }  // namespace graphdrl

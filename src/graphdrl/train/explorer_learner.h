@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "graphdrl/base/ranks.h"
 #include "graphdrl/nn/explorer_network.h"
 #include "graphdrl/train/adam.h"
 #include "graphdrl/train/lessons.h"
@@ -24,11 +25,11 @@ double explorer_loss(const ExplorerBatch& batch, std::span<const float> label, s
 
 class ExplorerLearner {
  public:
-  // ranking: as of explorer_loss(). Initialises the network from rng.
-  ExplorerLearner(double ranking, Rng& rng);
+  // ranking: as of explorer_loss(). Initialises the network from rng. ranks: share the work.
+  ExplorerLearner(double ranking, Rng& rng, Ranks& ranks = one_rank());
   ExplorerLearner(const ExplorerLearner&) = delete;
 
-  // One step of Adam at this learning rate, gradients cut to ±1 one by one; gives the loss before it.
+  // One step of Adam at this learning rate, gradients cut to ±1 one by one; gives the loss before it. Collective.
   double learn(std::span<const Lesson* const> lessons, double rate);
 
   // Of the last step: how many nodes the network's choice, among labelled first visits, is worse than the best of them;
@@ -40,16 +41,28 @@ class ExplorerLearner {
   void set_state(const ExplorerParameters& parameters, AdamState adam);
 
  private:
+  // What a thread computes the gradient of some lessons with.
+  struct Worker {
+    ExplorerNetwork network;
+    ExplorerScratch scratch;
+    ExplorerBatch batch;
+    ExplorerParameters grad;
+    std::vector<float> label;      // [C]
+    std::vector<float> shortfall;  // [C]
+    std::vector<float> grad_shortfall;
+  };
+  struct Losses {
+    double loss;
+    double regret;
+  };
+  Losses compute_gradient(std::span<const Lesson* const> lessons, double share, Worker& worker) const;
+
   double ranking_;
+  Ranks& ranks_;
   ExplorerParameters parameters_;
-  ExplorerParameters grad_;
   AdamState adam_;
-  ExplorerNetwork network_;
-  ExplorerScratch scratch_;
-  ExplorerBatch batch_;
-  std::vector<float> label_;      // [C]
-  std::vector<float> shortfall_;  // [C]
-  std::vector<float> grad_shortfall_;
+  std::vector<Worker> workers_;
+  std::vector<float> sum_;  // the gradient, the loss, the regret
   double regret_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include "graphdrl/train/explorer_learner.h"
 #include "graphdrl/train/explorer_replay.h"
+#include "graphdrl/train/minibatch.h"
 #include "graphdrl/train/round_recipe.h"
 
 namespace graphdrl {
@@ -65,11 +66,11 @@ LessonOptions lesson_options(const TrainOptions& options) {
 
 class ExplorerRecipe final : public RoundRecipe {
  public:
-  ExplorerRecipe(const TrainOptions& options, Rng& rng)
-      : RoundRecipe(options),
+  ExplorerRecipe(const TrainOptions& options, Rng& rng, Ranks& ranks)
+      : RoundRecipe(options, ranks),
         rng_(rng),
         lesson_options_(lesson_options(options)),
-        learner_(options.ranking, rng_),
+        learner_(options.ranking, rng_, ranks),
         replay_(static_cast<std::size_t>(options.replay_capacity)) {}
 
   void save(CheckpointWriter& checkpoint) const override {
@@ -96,7 +97,9 @@ class ExplorerRecipe final : public RoundRecipe {
   // The lessons of a round's walks, which the network leads as it is now.
   std::optional<std::int64_t> draw(std::int64_t round, const std::function<bool()>& stop) override {
     auto drawn = draw_walks<Lesson>(
-        round, stop, [&](std::uint64_t seed) { return draw_lessons(lesson_options_, learner_.parameters(), seed); });
+        round, stop, lesson_options_.worlds,
+        [&](std::uint64_t seed) { return draw_lessons(lesson_options_, learner_.parameters(), seed); },
+        [&] { return LessonBytes(lesson_options_); });
     if (!drawn) return std::nullopt;
     const std::int64_t count = std::ssize(*drawn);
     for (Lesson& lesson : *drawn) replay_.push(std::move(lesson));
@@ -109,6 +112,8 @@ class ExplorerRecipe final : public RoundRecipe {
     for (const Lesson*& lesson : picked) {
       lesson = &replay_.lesson(rng_.below(static_cast<std::uint32_t>(replay_.size())));
     }
+    balance_shards(picked,
+                   [](const Lesson* lesson) { return std::min(lesson->scope, lesson->at->world.valid_count()); });
     const double loss = learner_.learn(picked, rate);
     return LearningStep{.loss = loss, .regret = learner_.regret()};
   }
@@ -121,8 +126,8 @@ class ExplorerRecipe final : public RoundRecipe {
 
 }  // namespace
 
-std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng) {
-  return std::make_unique<ExplorerRecipe>(options, rng);
+std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng, Ranks& ranks) {
+  return std::make_unique<ExplorerRecipe>(options, rng, ranks);
 }
 
 }  // namespace graphdrl

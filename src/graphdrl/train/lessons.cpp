@@ -48,6 +48,32 @@ void visit(Lesson& walk, const FirstVisit& first) {
   walk.spendable -= first.cost;
 }
 
+void LessonBytes::put(const Lesson& lesson, ByteWriter& to) {
+  to.put(lesson.at->seed);
+  to.put_all<std::uint64_t>(lesson.visited.words());
+  to.put(lesson.position);
+  to.put(lesson.spendable);
+  to.put(lesson.scope);
+  to.put_all<float>(lesson.shortfall);
+}
+
+Lesson LessonBytes::get(ByteReader& from) {
+  const auto seed = from.get<std::uint64_t>();
+  if (!at_ || at_->seed != seed) at_ = std::make_shared<LessonWorld>(options_->world_of(seed), seed);
+  Lesson lesson{.at = at_,
+                .visited = NodeSet(at_->world.node_count()),
+                .position = kNoNode,
+                .spendable = 0,
+                .scope = 0,
+                .shortfall = {}};
+  std::ranges::copy(from.get_all<std::uint64_t>(), lesson.visited.words().begin());
+  lesson.position = from.get<NodeId>();
+  lesson.spendable = from.get<double>();
+  lesson.scope = from.get<int>();
+  lesson.shortfall = from.get_all<float>();
+  return lesson;
+}
+
 Task rest_of(const Lesson& walk) {
   const double budget = std::max(0.0, walk.spendable);
   return Task(walk.at->world, walk.position, budget).rest(walk.position, budget, walk.visited);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "graphdrl/base/bytes.h"
 #include "graphdrl/env/task.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/nn/explorer_network.h"
@@ -55,6 +56,18 @@ struct Lesson {
     const Task task(at->world, position, std::max(0.0, spendable));
     return encode(Exploration(task, visited, visited.count(), position, spendable), scratch, batch, scope).visits;
   }
+};
+
+// Lessons as other ranks tell them, one walk after the other: their worlds are drawn again.
+class LessonBytes {
+ public:
+  explicit LessonBytes(const LessonOptions& options) : options_(&options) {}
+  static void put(const Lesson& lesson, ByteWriter& to);
+  Lesson get(ByteReader& from);
+
+ private:
+  const LessonOptions* options_;
+  std::shared_ptr<const LessonWorld> at_;  // the last lesson's
 };
 
 // What is left to do of the walk.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "graphdrl/base/bytes.h"
 #include "graphdrl/env/world_families.h"
 #include "graphdrl/nn/online_network.h"
 
@@ -27,6 +28,18 @@ struct OnlineLessonOptions {
 struct OnlineLesson {
   std::vector<float> rows;   // [C, features]
   std::vector<float> value;  // [C], % of the nodes, less the mean; what teachers would choose is worth more
+};
+
+// Lessons as other ranks tell them.
+struct OnlineLessonBytes {
+  static void put(const OnlineLesson& lesson, ByteWriter& to) {
+    to.put_all<float>(lesson.rows);
+    to.put_all<float>(lesson.value);
+  }
+  static OnlineLesson get(ByteReader& from) {
+    auto rows = from.get_all<float>();
+    return {.rows = std::move(rows), .value = from.get_all<float>()};
+  }
 };
 
 // The lessons of one random walk. The same for the same seed.

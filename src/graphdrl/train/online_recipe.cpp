@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "graphdrl/train/adam.h"
+#include "graphdrl/train/minibatch.h"
 #include "graphdrl/train/online_lessons.h"
 #include "graphdrl/train/round_recipe.h"
 
@@ -47,8 +48,8 @@ std::vector<WorldSpec> online_worlds(int largest) {
 
 class OnlineRecipe final : public RoundRecipe {
  public:
-  OnlineRecipe(const TrainOptions& options, Rng& rng)
-      : RoundRecipe(options), rng_(rng), parameters_(rng), adam_(parameters_.values().size()) {
+  OnlineRecipe(const TrainOptions& options, Rng& rng, Ranks& ranks)
+      : RoundRecipe(options, ranks), rng_(rng), parameters_(rng), adam_(parameters_.values().size()) {
     lesson_options_.worlds = online_worlds(static_cast<int>(options.largest));
     lesson_options_.lead = options.lead;
   }
@@ -108,7 +109,9 @@ class OnlineRecipe final : public RoundRecipe {
     OnlineLessonOptions options = lesson_options_;
     options.by_rules = static_cast<double>(round) < kRuleRounds * static_cast<double>(this->options().rounds);
     auto drawn = draw_walks<OnlineLesson>(
-        round, stop, [&](std::uint64_t seed) { return draw_online_lessons(options, parameters_, seed); });
+        round, stop, options.worlds,
+        [&](std::uint64_t seed) { return draw_online_lessons(options, parameters_, seed); },
+        [] { return OnlineLessonBytes(); });
     if (!drawn) return std::nullopt;
     const std::int64_t count = std::ssize(*drawn);
     for (OnlineLesson& lesson : *drawn) {
@@ -122,26 +125,55 @@ class OnlineRecipe final : public RoundRecipe {
     return count;
   }
 
-  // Ascends the mean value of a choice by softmax(score), and a little of its entropy.
   std::optional<LearningStep> learn(double rate) override {
     if (lessons_.empty()) return std::nullopt;
-    const auto batch = static_cast<std::size_t>(options().batch_size);
-    std::vector<const OnlineLesson*> picked(batch);
-    rows_.clear();
-    std::size_t visits = 0;
+    std::vector<const OnlineLesson*> picked(static_cast<std::size_t>(options().batch_size));
     for (const OnlineLesson*& lesson : picked) {
       lesson = &lessons_[rng_.below(static_cast<std::uint32_t>(lessons_.size()))];
-      rows_.insert(rows_.end(), lesson->rows.begin(), lesson->rows.end());
+    }
+    balance_shards(picked, [](const OnlineLesson* lesson) { return lesson->value.size(); });
+    workers_.resize(static_cast<std::size_t>(threads()));
+    const std::size_t count = parameters_.values().size();
+    std::vector<float> sum(count + 2);
+    sum_over_minibatch(
+        ranks(), static_cast<int>(picked.size()),
+        [&](int worker, int begin, int end, std::span<float> of_shard) {
+          const auto lessons = std::span(std::as_const(picked)).subspan(begin, end - begin);
+          const LearningStep step = compute_gradient(lessons, static_cast<double>(picked.size()), workers_[worker]);
+          std::ranges::copy(std::as_const(workers_[worker].grad).values(), of_shard.begin());
+          of_shard[count] = static_cast<float>(step.loss);
+          of_shard[count + 1] = static_cast<float>(step.regret);
+        },
+        sum);
+    adam_.step(std::span(sum).first(count), rate, parameters_.values());
+    return LearningStep{.loss = sum[count], .regret = sum[count + 1]};
+  }
+
+  // What a thread computes the gradient of some lessons with.
+  struct Worker {
+    OnlineNetwork network;
+    OnlineParameters grad;
+    std::vector<float> rows;
+    std::vector<float> score;
+    std::vector<float> grad_score;
+  };
+
+  // Ascends the mean value of a choice by softmax(score), and a little of its entropy. batch: lessons of the minibatch.
+  LearningStep compute_gradient(std::span<const OnlineLesson* const> lessons, double batch, Worker& worker) const {
+    worker.rows.clear();
+    std::size_t visits = 0;
+    for (const OnlineLesson* const lesson : lessons) {
+      worker.rows.insert(worker.rows.end(), lesson->rows.begin(), lesson->rows.end());
       visits += lesson->value.size();
     }
-    score_.resize(visits);
-    grad_score_.resize(visits);
-    network_.forward(parameters_, rows_, score_);
+    worker.score.resize(visits);
+    worker.grad_score.resize(visits);
+    worker.network.forward(parameters_, worker.rows, worker.score);
     LearningStep step{.loss = 0, .regret = 0};
     std::size_t first = 0;
-    for (const OnlineLesson* const lesson : picked) {
+    for (const OnlineLesson* const lesson : lessons) {
       const std::size_t count = lesson->value.size();
-      const std::span<const float> score(score_.data() + first, count);
+      const std::span<const float> score(worker.score.data() + first, count);
       const auto best = std::ranges::max_element(score);
       std::vector<double> share(count);
       double sum = 0;
@@ -156,36 +188,31 @@ class OnlineRecipe final : public RoundRecipe {
       for (std::size_t i = 0; i < count; ++i) {
         const double by_value = share[i] * (lesson->value[i] - mean);
         const double by_entropy = -share[i] * (std::log(share[i] + 1e-12) + entropy);
-        grad_score_[first + i] = static_cast<float>(-(by_value + kEntropy * by_entropy) / static_cast<double>(batch));
+        worker.grad_score[first + i] = static_cast<float>(-(by_value + kEntropy * by_entropy) / batch);
       }
       const double least = static_cast<double>(*std::ranges::max_element(lesson->value)) -
                            lesson->value[static_cast<std::size_t>(best - score.begin())];
-      step.regret += least / static_cast<double>(batch);
-      step.loss -= (mean + kEntropy * entropy) / static_cast<double>(batch);
+      step.regret += least / batch;
+      step.loss -= (mean + kEntropy * entropy) / batch;
       first += count;
     }
-    network_.backward(parameters_, rows_, grad_score_, grad_);
-    adam_.step(grad_.values(), rate, parameters_.values());
+    worker.network.backward(parameters_, worker.rows, worker.grad_score, worker.grad);
     return step;
   }
 
   Rng& rng_;
   OnlineLessonOptions lesson_options_;
   OnlineParameters parameters_;
-  OnlineParameters grad_;
   AdamState adam_;
-  OnlineNetwork network_;
+  std::vector<Worker> workers_;
   std::vector<OnlineLesson> lessons_;  // a ring
   std::size_t next_ = 0;               // where the next lesson goes once the ring is full
-  std::vector<float> rows_;
-  std::vector<float> score_;
-  std::vector<float> grad_score_;
 };
 
 }  // namespace
 
-std::unique_ptr<Recipe> make_online_recipe(const TrainOptions& options, Rng& rng) {
-  return std::make_unique<OnlineRecipe>(options, rng);
+std::unique_ptr<Recipe> make_online_recipe(const TrainOptions& options, Rng& rng, Ranks& ranks) {
+  return std::make_unique<OnlineRecipe>(options, rng, ranks);
 }
 
 }  // namespace graphdrl

@@ -10,9 +10,10 @@ TrainingUnits units_of(const TrainOptions& options) {
 }
 
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
-                                    const LearnerSource& learners, std::vector<World> worlds) {
+                                    const LearnerSource& learners, std::vector<World> worlds, Ranks& ranks) {
   if (options.preset == kExplorerPreset) {
-    return options.reveal == "all" ? make_explorer_recipe(options, rng) : make_online_recipe(options, rng);
+    return options.reveal == "all" ? make_explorer_recipe(options, rng, ranks)
+                                   : make_online_recipe(options, rng, ranks);
   }
   if (from != nullptr) worlds = worlds_of(*from);
   if (worlds.empty()) worlds = load_worlds(options.maps);

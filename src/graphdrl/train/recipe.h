@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "graphdrl/base/error.h"
+#include "graphdrl/base/ranks.h"
 #include "graphdrl/env/world.h"
 #include "graphdrl/train/checkpoint.h"
 #include "graphdrl/train/options.h"
@@ -41,7 +42,7 @@ class Recipe {
   virtual ~Recipe() = default;
 
   // Does one more unit, or the rest of one; adds its samples. `stop` may end it early: then it gives false, and the
-  // next call goes on there. Throws NotFinite of a loss.
+  // next call goes on there. Throws NotFinite of a loss. Collective: a stop on one rank stops all.
   virtual bool run_unit(TrainingProgress& progress, const std::function<bool()>& stop) = 0;
 
   // After a unit, which is counted already: how it went, for a display …
@@ -61,15 +62,16 @@ class Recipe {
 
 // The recipe of options.preset, at its beginning; `rng` must outlive it. `from`: the checkpoint to be restored, if any,
 // which holds the maps. worlds: instead of options.maps, where there are any. Throws Error on maps that do not fit the
-// options.
+// options. ranks: work on it together; of the preset paper there must be one.
 std::unique_ptr<Recipe> make_recipe(const TrainOptions& options, Rng& rng, const Checkpoint* from,
-                                    const LearnerSource& learners, std::vector<World> worlds = {});
+                                    const LearnerSource& learners, std::vector<World> worlds, Ranks& ranks);
 
 // That of the preset explorer (explorer_recipe.cpp). A unit is a round of random walks, whose states search values, and
 // of learning steps on what is remembered. `stop` is asked before every walk and every learning step; a round whose
 // walks are not all drawn begins anew.
-std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng);
-std::unique_ptr<Recipe> make_online_recipe(const TrainOptions& options, Rng& rng);  // of maps that are not known
+std::unique_ptr<Recipe> make_explorer_recipe(const TrainOptions& options, Rng& rng, Ranks& ranks);
+// Of maps that are not known.
+std::unique_ptr<Recipe> make_online_recipe(const TrainOptions& options, Rng& rng, Ranks& ranks);
 
 // That of the preset paper (paper_recipe.cpp): Deep Q-learning over episodes on grid maps [paper, Algorithm 1]. A unit
 // is an episode; `stop` is asked before every step. Metrics are means over ten episodes, or fewer at the end; epsilon

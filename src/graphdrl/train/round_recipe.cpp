@@ -6,13 +6,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 
 namespace graphdrl {
 namespace {
 
 constexpr std::uint64_t kWalkPurpose = 1;  // of derive_seed
 constexpr const char* kRoundKey = "round";
-constexpr double kLastRate = 0.02;  // of the first learning rate, as in docs/explorer.md, "Training"
+constexpr std::int64_t kStepsPerQuestion = 16;  // of many ranks, whether to stop: asking each other takes time
+constexpr double kLastRate = 0.02;              // of the first learning rate, as in docs/explorer.md, "Training"
 
 }  // namespace
 
@@ -57,12 +59,22 @@ std::uint64_t RoundRecipe::seed_of(std::int64_t round, int walk) const {
   return derive_seed(options_.seed, kWalkPurpose, static_cast<std::uint64_t>(round * options_.walks + walk));
 }
 
+// A round's walks: at its end all wait for the last one, which should be short.
+std::vector<int> RoundRecipe::largest_first(std::int64_t round, const std::vector<WorldSpec>& worlds) const {
+  std::vector<int> order(static_cast<std::size_t>(options_.walks));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [&](int walk) { return worlds[seed_of(round, walk) % worlds.size()].most_nodes(); });
+  return order;
+}
+
 // Takes a round's learning steps that are left, unless `stop` says so. The learning rate falls by a cosine from 1 to
 // kLastRate of the first one over the whole training [Loshchilov and Hutter 2017].
 bool RoundRecipe::take_steps(std::int64_t round, const std::function<bool()>& stop) {
   const auto updates = static_cast<double>(options_.updates);
   for (; *updates_ < options_.updates; ++*updates_) {
-    if (stop()) return false;
+    const bool asks = ranks_.alone() || *updates_ % kStepsPerQuestion == 0;
+    if (asks && ranks_.any(stop())) return false;
     const double done =
         (static_cast<double>(round) + static_cast<double>(*updates_) / updates) / static_cast<double>(options_.rounds);
     const double rate_share = kLastRate + (1 - kLastRate) * (1 + std::cos(std::numbers::pi * done)) / 2;

@@ -11,9 +11,9 @@
 namespace graphdrl {
 
 // Another trainer is at work on the run.
-class RunLocked : public Error {
+class RunLocked : public Busy {
  public:
-  using Error::Error;
+  using Busy::Busy;
 };
 
 // run.lock, held while this lives. On one host the kernel lets go of it with the process. A trainer on another host,

@@ -95,24 +95,34 @@ RunDirectory SeedRuns::run_directory_in(const std::filesystem::path& folder, std
 }
 
 SeedRuns::SeedRuns(const SeedsFile& file, const std::filesystem::path& folder)
-    : folder_(folder), trainings_(planned_runs(file, folder)) {}
+    : folder_(folder), trainings_(planned_runs(file, folder), folder) {}
 
 SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t> seeds,
-                         const std::filesystem::path& folder, const LearnerSource& learners) {
-  if (are_in(folder)) {
-    throw Error({.what = "the folder holds runs already",
-                 .expected = "a new folder, or --resume to go on with them",
-                 .where = folder.string()});
-  }
-  RunDirectory(folder).require_new();
+                         const std::filesystem::path& folder, const LearnerSource& learners, Ranks& ranks) {
   const SeedsFile file{.seeds = std::move(seeds), .options = options};
   Trainer::check(options, learners);
-  for (const PlannedRun& run : planned_runs(file, folder)) run.directory.require_new();
-  prepare_folder(folder);
-  Json json = config_json(options);
-  json.erase("seed");
-  json[kSeedsKey] = file.seeds;
-  write_checked_json(seeds_file(folder), json);
+  ranks.on_first([&] {
+    Json json = config_json(options);
+    json.erase("seed");
+    json[kSeedsKey] = file.seeds;
+    const auto require_same_runs = [&] {
+      if (read_checked_json(seeds_file(folder)) == json) return;
+      throw Error({.what = "the folder holds other runs already",
+                   .expected = "a new folder, or --resume to go on with them",
+                   .where = folder.string()});
+    };
+    if (are_in(folder)) return require_same_runs();
+    try {
+      RunDirectory(folder).require_new();
+      for (const PlannedRun& run : planned_runs(file, folder)) run.directory.require_new();
+    } catch (const Error&) {
+      if (are_in(folder)) return require_same_runs();  // another process has begun in the meantime
+      throw;
+    }
+    prepare_folder(folder);
+    write_checked_json(seeds_file(folder), json);
+  });
+  ranks.require_same("files in " + folder.string(), are_in(folder) ? "seen" : "");
   return {file, folder};
 }
 

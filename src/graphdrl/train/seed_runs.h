@@ -23,10 +23,11 @@ SeedsFile read_seeds(const std::filesystem::path& folder);
 
 class SeedRuns {
  public:
-  // Plans a run for each seed: writes FOLDER/seeds.json. Throws Error, as Trainer::start, and where the folder holds
-  // such runs already.
+  // Plans a run for each seed: writes FOLDER/seeds.json. Goes on with the runs of a folder that were told the same.
+  // Throws Error, as Trainer::start, and where the folder holds other runs. Collective: the first rank writes.
   static SeedRuns start(const TrainOptions& options, std::vector<std::uint64_t> seeds,
-                        const std::filesystem::path& folder, const LearnerSource& learners = kCpuLearners);
+                        const std::filesystem::path& folder, const LearnerSource& learners = kCpuLearners,
+                        Ranks& ranks = one_rank());
 
   // Goes on with the runs of a folder. Throws Error where its files are not whole.
   static SeedRuns resume(const std::filesystem::path& folder);

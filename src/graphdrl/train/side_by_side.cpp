@@ -10,8 +10,8 @@
 #include <system_error>
 #include <thread>
 
+#include "graphdrl/base/bytes.h"
 #include "graphdrl/base/error.h"
-#include "graphdrl/base/parallel.h"
 
 namespace graphdrl {
 
@@ -41,7 +41,7 @@ std::vector<std::vector<int>> runs_alike(const std::vector<PlannedRun>& runs) {
 
 // Each run on a thread of its own, with a source of its own, which goes with its thread.
 void run_together(const std::vector<int>& runs, std::vector<std::unique_ptr<LearnerSource>> sources,
-                  const std::function<void(int run, const LearnerSource&)>& train) {
+                  const std::function<bool(int run, const LearnerSource&)>& train) {
   std::vector<std::exception_ptr> failures(runs.size());
   std::vector<std::thread> threads;
   threads.reserve(runs.size());
@@ -66,8 +66,9 @@ void run_together(const std::vector<int>& runs, std::vector<std::unique_ptr<Lear
 
 }  // namespace
 
-SideBySide::SideBySide(std::vector<PlannedRun> runs)
+SideBySide::SideBySide(std::vector<PlannedRun> runs, std::filesystem::path folder)
     : runs_(std::move(runs)),
+      folder_(std::move(folder)),
       progress_(runs_.size()),
       finished_(runs_.size()),
       units_(units_of(runs_.front().options)) {
@@ -86,14 +87,14 @@ std::int64_t SideBySide::sum(std::int64_t TrainingProgress::*member) const {
 }
 
 bool SideBySide::run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell,
-                     const LearnerSource& learners) {
+                     const LearnerSource& learners, const TaskWorkers& workers) {
   const auto start = std::chrono::steady_clock::now();
   const auto trained = [&](const TrainingProgress& progress) { return progress.done == units_.count; };
   const std::int64_t samples_before = sum(&TrainingProgress::samples);
   std::mutex mutex;
   const auto train_one = [&](int run, const LearnerSource& source) {
     TrainingProgress& progress = progress_[static_cast<std::size_t>(run)];
-    if (finished_[run] || stop()) return;
+    if (finished_[run] || stop()) return finished_[run] != 0;
     finished_[run] = train(run, source, stop, [&](const TrainingProgress& now) {
       const std::lock_guard lock(mutex);
       progress = now;
@@ -104,18 +105,42 @@ bool SideBySide::run(const std::function<bool()>& stop, const std::function<void
             .units = units_.count * std::ssize(runs_),
             .samples_per_s = static_cast<double>(samples) / std::max(session_s, 1e-9)});
     });
+    return finished_[run] != 0;
   };
-  std::vector<int> alone;
-  for (const std::vector<int>& alike : runs_alike(runs_)) {
+  for (std::vector<int> alike : runs_alike(runs_)) {
+    std::erase_if(alike, [&](int run) { return !workers.share.has(run) || is_left_out(run); });
+    if (alike.empty()) continue;
     auto sources = learners.make_together(runs_[alike.front()].options.device, static_cast<int>(alike.size()));
-    if (sources.empty()) {
-      alone.insert(alone.end(), alike.begin(), alike.end());
-    } else {
-      run_together(alike, std::move(sources), train_one);
+    if (!sources.empty()) run_together(alike, std::move(sources), train_one);
+  }
+  std::vector<TaskFolder::Task> tasks;
+  for (std::size_t run = 0; run < runs_.size(); ++run) {
+    tasks.push_back({.name = name_of(run), .done = finished_[run] != 0});
+  }
+  const bool done = folder_.run(tasks, workers, stop, [&](int run) { return train_one(run, learners); });
+  hear_of_others(workers.ranks);
+  return done;
+}
+
+std::string SideBySide::name_of(std::size_t run) const {
+  return runs_[run].directory.path().lexically_relative(folder_.path()).string();
+}
+
+// Where the runs stand that other ranks have trained.
+void SideBySide::hear_of_others(Ranks& ranks) {
+  if (ranks.alone()) return;
+  ByteWriter own;
+  own.put_all<TrainingProgress>(progress_);
+  own.put_all<char>(finished_);
+  for (const std::string& of_rank : ranks.gather(own.bytes())) {
+    ByteReader heard(of_rank);
+    const auto progress = heard.get_all<TrainingProgress>();
+    const auto finished = heard.get_all<char>();
+    for (std::size_t run = 0; run < runs_.size(); ++run) {
+      if (progress[run].samples > progress_[run].samples) progress_[run] = progress[run];
+      if (finished[run] != 0) finished_[run] = 1;
     }
   }
-  parallel_for(static_cast<int>(alone.size()), [&](int i) { train_one(alone[i], learners); });
-  return std::all_of(finished_.begin(), finished_.end(), [](char finished) { return finished != 0; });
 }
 
 // Begins a run or goes on with it.

@@ -6,6 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include "graphdrl/base/ranks.h"
+#include "graphdrl/io/task_folder.h"
 #include "graphdrl/train/trainer.h"
 
 namespace graphdrl {
@@ -27,17 +29,22 @@ struct SideBySideNews {
 class SideBySide {
  public:
   // Reads where the runs stand that are begun, by their records. Throws Error where a directory holds a finished run of
-  // other options; run() does so of the others.
+  // other options; run() does so of the others. The folder, that of all runs, remembers which failed.
   // REQUIRES: at least one run; all of one preset, length and device.
-  explicit SideBySide(std::vector<PlannedRun> runs);
+  SideBySide(std::vector<PlannedRun> runs, std::filesystem::path folder);
 
-  // Begins the others and goes on with all, on threads() threads, until they are trained or `stop` says so; then those
-  // that are begun are saved. Where the device works for several at once, runs that differ in their seeds alone are
-  // trained together. Memory: that of the trainings under way. `tell` may be called on any thread, but never twice at a
-  // time. Throws Error, as Trainer does, also RunLocked, once the other runs are trained. Gives whether all are
-  // trained.
+  // Begins the others and goes on with all that are of the share, on threads() threads of all ranks, until they are
+  // trained or `stop` says so; then those that are begun are saved. Where the device works for several at once, runs
+  // that differ in their seeds alone are trained together, by one rank. Memory: that of the trainings under way.
+  // `tell`, of the runs of this rank, may be called on any thread, but never twice at a time. Throws Error, as Trainer
+  // does, also RunLocked, once the other runs are trained [TaskFolder]. Gives whether all of the share are trained or
+  // left out. Collective.
   bool run(const std::function<bool()>& stop, const std::function<void(const SideBySideNews&)>& tell,
-           const LearnerSource& learners = kCpuLearners);
+           const LearnerSource& learners = kCpuLearners, const TaskWorkers& workers = {});
+
+  // Whether a run failed too often. Asks the disk.
+  bool is_left_out(std::size_t run) const { return folder_.is_left_out(name_of(run)); }
+  bool is_trained(std::size_t run) const { return finished_[run] != 0; }
 
   const std::vector<PlannedRun>& runs() const { return runs_; }
   const std::vector<TrainingProgress>& progress() const { return progress_; }  // of the runs
@@ -46,9 +53,12 @@ class SideBySide {
  private:
   bool train(int run, const LearnerSource& learners, const std::function<bool()>& stop,
              const std::function<void(const TrainingProgress&)>& tell) const;
+  std::string name_of(std::size_t run) const;
+  void hear_of_others(Ranks& ranks);
   std::int64_t sum(std::int64_t TrainingProgress::*member) const;
 
   std::vector<PlannedRun> runs_;
+  TaskFolder folder_;
   std::vector<TrainingProgress> progress_;
   std::vector<char> finished_;  // by their records
   TrainingUnits units_;

@@ -9,6 +9,7 @@
 
 #include "graphdrl/base/clock.h"
 #include "graphdrl/base/note.h"
+#include "graphdrl/io/checksum.h"
 #include "graphdrl/io/file.h"
 
 namespace graphdrl {
@@ -59,22 +60,26 @@ std::optional<Checkpoint> newest_checkpoint(const RunDirectory& run) {
   return std::nullopt;
 }
 
-// That a run was told, by its checkpoint or else by its configuration.
-std::string device_of(const RunDirectory& run) {
-  const std::optional<Checkpoint> from = newest_checkpoint(run);
-  if (from && from->holds_options()) return parse_options(from->json(kOptionsKey), from->source()).device;
-  return config_of(run).value_or(TrainOptions{}).device;
-}
-
 }  // namespace
 
+TrainOptions Trainer::options_of(const RunDirectory& run) {
+  const std::optional<Checkpoint> from = newest_checkpoint(run);
+  if (from && from->holds_options()) return parse_options(from->json(kOptionsKey), from->source());
+  return config_of(run).value_or(TrainOptions{});
+}
+
 Trainer::Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const LearnerSource& learners,
-                 std::vector<World> worlds)
-    : options_(options), run_(std::move(run)), learners_(learners), rng_(options.seed), units_(units_of(options)) {
+                 std::vector<World> worlds, Ranks& ranks)
+    : options_(options),
+      run_(std::move(run)),
+      learners_(learners),
+      ranks_(ranks),
+      rng_(options.seed),
+      units_(units_of(options)) {
   if (from != nullptr) {
     restore(*from);
   } else {
-    recipe_ = make_recipe(options_, rng_, nullptr, learners_, std::move(worlds));
+    recipe_ = make_recipe(options_, rng_, nullptr, learners_, std::move(worlds), ranks_);
   }
 }
 
@@ -88,7 +93,7 @@ void Trainer::restore(const Checkpoint& from) {
   }
   TrainOptions slower = options_;
   slower.learning_rate = std::ldexp(options_.learning_rate, -static_cast<int>(rollbacks_));
-  recipe_ = make_recipe(slower, rng_, &from, learners_);
+  recipe_ = make_recipe(slower, rng_, &from, learners_, {}, ranks_);
   recipe_->restore(from, progress_);
   rng_ = from.rng();
   if (!from.holds_options()) return;
@@ -98,27 +103,34 @@ void Trainer::restore(const Checkpoint& from) {
 
 void Trainer::check(const TrainOptions& options, const LearnerSource& learners) {
   validate(options);
-  Trainer(options, RunDirectory(""), nullptr, learners, {});
+  Trainer(options, RunDirectory(""), nullptr, learners, {}, one_rank());
 }
 
 std::unique_ptr<Trainer> Trainer::start(const TrainOptions& options, const RunDirectory& run,
-                                        const LearnerSource& learners, std::vector<World> worlds) {
+                                        const LearnerSource& learners, std::vector<World> worlds, Ranks& ranks) {
   validate(options);
-  std::unique_ptr<Trainer> trainer(new Trainer(options, run, nullptr, learners, std::move(worlds)));
-  run.require_new();
-  prepare_folder(run.path());
-  trainer->lock_ = std::make_unique<RunLock>(run);
-  run.require_new();
+  std::unique_ptr<Trainer> trainer(new Trainer(options, run, nullptr, learners, std::move(worlds), ranks));
+  ranks.on_first([&] {
+    run.require_new();
+    prepare_folder(run.path());
+    trainer->lock_ = std::make_unique<RunLock>(run);
+    run.require_new();
+  });
   trainer->save();
   return trainer;
 }
 
-std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const LearnerSource& learners) {
-  if (!run.holds_a_run()) throw Error({.what = "there is no run to go on with", .where = run.path().string()});
-  learners.prepare(device_of(run));
-  auto lock = std::make_unique<RunLock>(run);
+std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const LearnerSource& learners, Ranks& ranks) {
+  std::unique_ptr<RunLock> lock;
+  ranks.on_first([&] {
+    if (!run.holds_a_run()) throw Error({.what = "there is no run to go on with", .where = run.path().string()});
+    learners.prepare(options_of(run).device);
+    lock = std::make_unique<RunLock>(run);
+  });
   const RunState state = state_of(run);
   const std::optional<Checkpoint> from = newest_checkpoint(run);
+  if (!ranks.alone())
+    ranks.require_same("files in " + run.path().string(), from ? checksum({read_file(from->source())}) : "");
   const auto config = config_of(run);
   if (!from) {
     const bool alone =
@@ -126,20 +138,20 @@ std::unique_ptr<Trainer> Trainer::resume(const RunDirectory& run, const LearnerS
     if (!config || !alone) {
       throw Error({.what = "the run cannot be gone on with: it has no checkpoint", .where = run.path().string()});
     }
-    say(run, "there is no checkpoint: the run begins anew");
+    if (ranks.is_first()) say(run, "there is no checkpoint: the run begins anew");
   }
   const TrainOptions options = !from                   ? *config
                                : from->holds_options() ? parse_options(from->json(kOptionsKey), from->source())
                                                        : read_config(run.config());
   if (from) from->require_preset(options.preset);
-  std::unique_ptr<Trainer> trainer(new Trainer(options, run, from ? &*from : nullptr, learners, {}));
+  std::unique_ptr<Trainer> trainer(new Trainer(options, run, from ? &*from : nullptr, learners, {}, ranks));
   trainer->lock_ = std::move(lock);
   trainer->saved_ = trainer->progress_;
   if (!from) {
     trainer->save();
   } else if (state.finished()) {
     trainer->is_whole_ = true;
-  } else {
+  } else if (ranks.is_first()) {
     trainer->mend(state, *from);
   }
   return trainer;
@@ -211,11 +223,14 @@ void Trainer::go_back(const NotFinite& failure) {
         {.what = what, .expected = fmt::format("a smaller --learning-rate: it was halved {} times", rollbacks_)});
   }
   ++rollbacks_;
-  say(run_, fmt::format("{}; going on from there with the learning rate halved, {} of {} times", what, rollbacks_,
-                        kMostRollbacks));
+  if (ranks_.is_first()) {
+    say(run_, fmt::format("{}; going on from there with the learning rate halved, {} of {} times", what, rollbacks_,
+                          kMostRollbacks));
+  }
   const Checkpoint from = newest_checkpoint(run_).value();
   keeps_checkpoint_ = from.source() == run_.checkpoint().string();
   restore(from);
+  ranks_.any(false);  // all have read before the first one writes
   metrics_file_.reset();
   save();
 }
@@ -224,16 +239,18 @@ bool Trainer::train(const std::function<bool()>& stop, const std::function<void(
   const TrainingProgress before = progress_;
   const Stopwatch session;
   const auto must_stop = [&] {
-    lock_->beat();
+    if (lock_) lock_->beat();
     return stop();
   };
-  metrics_file_ = std::make_unique<MetricsFile>(run_.metrics(), units_.name, metrics_);
-  events_ = std::make_unique<EventWriter>(run_.path(), progress_.done + 1);
+  ranks_.on_first([&] {
+    metrics_file_ = std::make_unique<MetricsFile>(run_.metrics(), units_.name, metrics_);
+    events_ = std::make_unique<EventWriter>(run_.path(), progress_.done + 1);
+  });
   bool stopped = false;
   while (!finished() && !stopped && recipe_->run_unit(progress_, must_stop)) {
     ++progress_.done;
     if (options_.device == "cpu") require_finite();  // a device would wait
-    stopped = must_stop();
+    stopped = ranks_.any(must_stop());
     progress_.elapsed_s = before.elapsed_s + session.seconds();
     const double rate = static_cast<double>(progress_.samples - before.samples) / std::max(session.seconds(), 1e-9);
     std::string status = fmt::format("{}  {:.0f} {}/s", recipe_->status(progress_), rate, units_.samples);
@@ -248,7 +265,7 @@ bool Trainer::train(const std::function<bool()>& stop, const std::function<void(
 
 std::vector<Metric> Trainer::log() {
   std::vector<Metric> taken = recipe_->take_metrics(progress_);
-  if (taken.empty()) return taken;
+  if (taken.empty() || !ranks_.is_first()) return taken;
   std::vector<Scalar> all;
   std::vector<Scalar> curves;
   for (const Metric& metric : taken) {
@@ -269,8 +286,13 @@ void Trainer::require_finite() const {
 // Each file is on the disk before the next one: what the record names is there. A kill between two of them leaves a
 // checkpoint that is newer than the record, from which the rest is written again.
 void Trainer::save() {
-  lock_->require_held();
   require_finite();
+  ranks_.on_first([&] { write_files(); });
+  saved_ = progress_;
+}
+
+void Trainer::write_files() {
+  lock_->require_held();
   // What others did to these files in the meantime is undone.
   const std::string config = config_text(options_);
   if (!is_as_meant(run_.config(), config)) write_file(run_.config(), config);
@@ -303,7 +325,6 @@ void Trainer::save() {
   record.add(run_.config(), config);
   if (metrics_file_) record.add(run_.metrics(), metrics_);
   write_record(run_, record);
-  saved_ = progress_;
 }
 
 }  // namespace graphdrl

@@ -32,13 +32,19 @@ class Trainer {
   // holds a run or cannot be written, RunLocked where another trainer is at work on it. worlds: instead of
   // options.maps, where there are any.
   static std::unique_ptr<Trainer> start(const TrainOptions& options, const RunDirectory& run,
-                                        const LearnerSource& learners = kCpuLearners, std::vector<World> worlds = {});
-  // `learners` must outlive the trainer.
+                                        const LearnerSource& learners = kCpuLearners, std::vector<World> worlds = {},
+                                        Ranks& ranks = one_rank());
+  // `learners` and `ranks` must outlive the trainer. Several ranks train together (not the preset paper), and the first
+  // one writes: all calls are collective then, and all ranks must see the run directory.
+
+  // What a run was told, by its checkpoint or else by its configuration; the defaults where it has neither.
+  static TrainOptions options_of(const RunDirectory& run);
 
   // Goes on with the run in a directory, from its checkpoint; from the one before it where that is missing or damaged;
   // from the beginning where the run has no checkpoint yet. Everything else is mended from the checkpoint, with a note.
   // Throws Error where no checkpoint is whole, and as start().
-  static std::unique_ptr<Trainer> resume(const RunDirectory& run, const LearnerSource& learners = kCpuLearners);
+  static std::unique_ptr<Trainer> resume(const RunDirectory& run, const LearnerSource& learners = kCpuLearners,
+                                         Ranks& ranks = one_rank());
 
   Trainer(const Trainer&) = delete;
 
@@ -55,7 +61,7 @@ class Trainer {
  private:
   // Touches no file.
   Trainer(const TrainOptions& options, RunDirectory run, const Checkpoint* from, const LearnerSource& learners,
-          std::vector<World> worlds);
+          std::vector<World> worlds, Ranks& ranks);
 
   bool finished() const { return progress_.done == units_.count; }
   void mend(const RunState& state, const Checkpoint& from);
@@ -66,11 +72,13 @@ class Trainer {
   std::vector<Metric> log();
   void require_finite() const;
   void save();
+  void write_files();
 
   TrainOptions options_;
   RunDirectory run_;
   const LearnerSource& learners_;
-  std::unique_ptr<RunLock> lock_;
+  Ranks& ranks_;
+  std::unique_ptr<RunLock> lock_;  // as all that is written, the first rank's
   Rng rng_;
   std::unique_ptr<Recipe> recipe_;
   TrainingUnits units_;

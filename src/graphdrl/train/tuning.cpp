@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "graphdrl/base/bytes.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
@@ -145,21 +146,27 @@ std::vector<TuneRound> parse_rounds(const std::string& text) {
 Tuning::Tuning(TuneOptions options, std::vector<Setting> settings, std::filesystem::path folder)
     : options_(std::move(options)), settings_(std::move(settings)), folder_(std::move(folder)) {}
 
-Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, const LearnerSource& learners) {
-  if (std::filesystem::exists(tune_file(folder))) {
-    throw Error({.what = "the folder holds a search already",
-                 .expected = "a new folder, or --resume to go on with it",
-                 .where = folder.string()});
-  }
+Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, const LearnerSource& learners,
+                     Ranks& ranks) {
   Trainer::check(options_of(options, Setting::object(), ""), learners);  // refuses what all would
   std::vector<Setting> settings = draw_settings(options.rounds.front().settings, options.seed);
-  prepare_folder(folder);
-  write_checked_json(tune_file(folder), {{"options", to_json(options)}, {"settings", settings}});
-  write_maps(options, folder);
+  ranks.on_first([&] {
+    const Json json = {{"options", to_json(options)}, {"settings", settings}};
+    if (!std::filesystem::exists(tune_file(folder))) {
+      prepare_folder(folder);
+      write_checked_json(tune_file(folder), json);
+    } else if (read_checked_json(tune_file(folder)) != json) {
+      throw Error({.what = "the folder holds another search already",
+                   .expected = "a new folder, or --resume to go on with it",
+                   .where = folder.string()});
+    }
+    write_maps(options, folder);
+  });
+  ranks.require_same("files in " + folder.string(), std::filesystem::exists(tune_file(folder)) ? "seen" : "");
   return {options, std::move(settings), std::move(folder)};
 }
 
-Tuning Tuning::resume(std::filesystem::path folder) {
+Tuning Tuning::resume(std::filesystem::path folder, Ranks& ranks) {
   const std::string source = tune_file(folder).string();
   const Json json = read_checked_json(source);
   try {
@@ -180,7 +187,7 @@ Tuning Tuning::resume(std::filesystem::path folder) {
       throw Error({.what = "the first setting is not the paper's", .where = source});
     }
     for (const Setting& setting : settings) options_of(options, setting, folder / "maps" / "train");
-    write_maps(options, folder);  // a kill may have come between
+    ranks.on_first([&] { write_maps(options, folder); });  // a kill may have come between
     return {std::move(options), std::move(settings), std::move(folder)};
   } catch (const Json::exception& error) {
     throw Error(
@@ -218,39 +225,72 @@ std::vector<PlannedRun> Tuning::runs_of(std::size_t round) const {
 
 bool Tuning::run(const std::function<bool()>& stop,
                  const std::function<void(std::size_t round, const SideBySideNews&)>& tell,
-                 const LearnerSource& learners) {
+                 const LearnerSource& learners, const TaskWorkers& workers) {
   for (std::size_t round = scores_.size(); round < options_.rounds.size(); ++round) {
-    SideBySide trainings(runs_of(round));
+    SideBySide trainings(runs_of(round), folder_);
     if (!trainings.run(
-            stop, [&](const SideBySideNews& news) { tell(round, news); }, learners))
+            stop, [&](const SideBySideNews& news) { tell(round, news); }, learners, workers)) {
       return false;
-    std::optional<RoundScores> scores = score(round, stop);
+    }
+    if (!workers.share.all()) {
+      for (std::size_t run = 0; run < trainings.runs().size(); ++run) {
+        if (!trainings.is_trained(run) && !trainings.is_left_out(run)) return false;  // another share's
+      }
+    }
+    std::optional<RoundScores> scores = score(round, trainings, stop, workers.ranks);
     if (!scores) return false;
     scores_.push_back(std::move(*scores));
   }
   return true;
 }
 
-std::optional<RoundScores> Tuning::score(std::size_t round, const std::function<bool()>& stop) const {
+std::vector<double> Tuning::scores_by_seed(std::span<const PlannedRun> runs, const std::vector<World>& worlds) const {
+  ComparisonOptions comparison{.policies = {}, .all_starts = true};
+  comparison.budget = Budget::parse(default_options(kPaperPreset).budget);
+  for (const PlannedRun& run : runs) comparison.policies.push_back(run.directory.policy().string());
+  std::vector<double> by_seed;
+  for (const ComparisonOverall& of_seed : compare(worlds, comparison).overall) by_seed.push_back(*of_seed.mean);
+  return by_seed;
+}
+
+std::optional<RoundScores> Tuning::score(std::size_t round, const SideBySide& trainings,
+                                         const std::function<bool()>& stop, Ranks& ranks) const {
   const std::vector<World> worlds = load_worlds({(folder_ / "maps" / "validation").string()});
-  const std::vector<PlannedRun> runs = runs_of(round);
   const auto seeds = static_cast<std::size_t>(options_.rounds[round].seeds);
-  RoundScores scores;
-  for (const std::size_t setting : settings_of(round)) {
-    if (stop()) return std::nullopt;
-    ComparisonOptions comparison{.policies = {}, .all_starts = true};
-    comparison.budget = Budget::parse(default_options(kPaperPreset).budget);
-    for (std::size_t i = 0; i < seeds; ++i) {
-      comparison.policies.push_back(runs[scores.size() * seeds + i].directory.policy().string());
+  const std::vector<std::size_t> settings = settings_of(round);
+  std::vector<std::vector<double>> by_seed(settings.size());
+  ByteWriter own;
+  bool stopped = false;
+  const auto queue = ranks.hand_out(static_cast<int>(settings.size()));
+  while (const auto place = queue->next()) {
+    stopped = stopped || stop();
+    const std::size_t first = static_cast<std::size_t>(*place) * seeds;
+    bool whole = true;
+    for (std::size_t run = first; run < first + seeds; ++run) whole = whole && trainings.is_trained(run);
+    if (stopped || !whole) continue;
+    own.put(*place);
+    own.put_all<double>(scores_by_seed(std::span(trainings.runs()).subspan(first, seeds), worlds));
+  }
+  if (ranks.any(stopped)) return std::nullopt;
+  for (const std::string& of_rank : ranks.gather(own.bytes())) {
+    for (ByteReader heard(of_rank); !heard.at_end();) {
+      const int place = heard.get<int>();
+      by_seed[place] = heard.get_all<double>();
     }
-    SettingScore score{.setting = setting, .by_seed = {}, .over_seeds = {}, .over_paper = 0, .over_paper_errors = {}};
-    for (const ComparisonOverall& of_seed : compare(worlds, comparison).overall) score.by_seed.push_back(*of_seed.mean);
-    score.over_seeds = summarise(score.by_seed);
-    const std::vector<double>& paper = scores.empty() ? score.by_seed : scores.front().by_seed;
-    const PairedDifference difference = paired_difference(score.by_seed, paper);
-    score.over_paper = difference.mean;
-    score.over_paper_errors = difference.in_errors;
-    scores.push_back(std::move(score));
+  }
+  if (by_seed.front().empty()) {
+    throw Error({.what = "trainings by the paper's values failed: there is nothing to compare with",
+                 .where = (folder_ / "failed").string()});
+  }
+  RoundScores scores;
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (by_seed[i].empty()) continue;
+    const PairedDifference difference = paired_difference(by_seed[i], by_seed.front());
+    scores.push_back({.setting = settings[i],
+                      .by_seed = by_seed[i],
+                      .over_seeds = summarise(by_seed[i]),
+                      .over_paper = difference.mean,
+                      .over_paper_errors = difference.in_errors});
   }
   std::stable_sort(scores.begin(), scores.end(),
                    [](const auto& one, const auto& other) { return one.over_seeds.mean > other.over_seeds.mean; });

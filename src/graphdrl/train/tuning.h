@@ -56,16 +56,17 @@ struct ValueEffect {
 
 class Tuning {
  public:
-  // Draws the settings and the maps, and writes FOLDER/tune.json and FOLDER/maps/. Throws Error where the folder holds
-  // a search already.
+  // Draws the settings and the maps, and writes FOLDER/tune.json and FOLDER/maps/. Goes on with a search that was told
+  // the same. Throws Error where the folder holds another. Collective, as the next two: the first rank writes.
   static Tuning start(const TuneOptions& options, std::filesystem::path folder,
-                      const LearnerSource& learners = kCpuLearners);
-  static Tuning resume(std::filesystem::path folder);
+                      const LearnerSource& learners = kCpuLearners, Ranks& ranks = one_rank());
+  static Tuning resume(std::filesystem::path folder, Ranks& ranks = one_rank());
 
-  // All rounds, or until `stop` says so; gives whether it is finished. The runs lie in
-  // FOLDER/round-R/setting-I/seed-S.
+  // All rounds, or until `stop` says so; gives whether it is finished. Of a share of the tasks, the runs of the first
+  // round that lacks any: it is not finished then. The runs lie in FOLDER/round-R/setting-I/seed-S. Settings with a run
+  // that failed too often take no part any more. Throws Error where that is the paper's.
   bool run(const std::function<bool()>& stop, const std::function<void(std::size_t round, const SideBySideNews&)>& tell,
-           const LearnerSource& learners = kCpuLearners);
+           const LearnerSource& learners = kCpuLearners, const TaskWorkers& workers = {});
 
   const TuneOptions& options() const { return options_; }
   const std::vector<Setting>& settings() const { return settings_; }
@@ -77,8 +78,10 @@ class Tuning {
 
   std::vector<std::size_t> settings_of(std::size_t round) const;
   std::vector<PlannedRun> runs_of(std::size_t round) const;
-  // Nothing where `stop`, asked before each setting, says so.
-  std::optional<RoundScores> score(std::size_t round, const std::function<bool()>& stop) const;
+  // Nothing where `stop`, asked before each setting, says so. trainings: the round's.
+  std::optional<RoundScores> score(std::size_t round, const SideBySide& trainings, const std::function<bool()>& stop,
+                                   Ranks& ranks) const;
+  std::vector<double> scores_by_seed(std::span<const PlannedRun> runs, const std::vector<World>& worlds) const;
 
   TuneOptions options_;
   std::vector<Setting> settings_;

@@ -209,11 +209,11 @@ TEST(PaperStack, TrainsManySeedsAsSingleRuns) {
       runs.push_back({options_of(seed, device), RunDirectory(folder / (device + std::to_string(seed)))});
     }
     const StackedLearners learners;
-    SideBySide stacked(runs);
+    SideBySide stacked(runs, folder.path());
     std::atomic<int> asked = 0;
     EXPECT_FALSE(
         stacked.run([&] { return ++asked > 60; }, [](const SideBySideNews&) {}, learners));  // stopped and resumed
-    SideBySide resumed(runs);
+    SideBySide resumed(runs, folder.path());
     ASSERT_TRUE(resumed.run([] { return false; }, [](const SideBySideNews&) {}, learners));
     for (std::size_t i = 0; i < seeds.size(); ++i) {
       const RunDirectory alone(folder / (device + "-alone" + std::to_string(seeds[i])));
