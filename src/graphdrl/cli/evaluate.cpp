@@ -95,11 +95,8 @@ Json origin_of(const EvaluateOptions& options, const std::vector<std::string>& p
           {"files", checksums_of(maps, policies)}};
 }
 
-void evaluate(const EvaluateOptions& options, const CLI::App& command, Ranks& ranks) {
-  if (options.out.empty() && (!options.share.task.empty() || options.share.merge)) {
-    throw Error({.what = "shares meet in a folder", .expected = "--out FOLDER with --task and --merge"});
-  }
-
+// What is asked for, but for what comes with the maps.
+ComparisonOptions comparison_of(const EvaluateOptions& options) {
   ComparisonOptions comparison = options.comparison;
   if (!options.budget.empty()) comparison.budget = Budget::parse(options.budget);
   comparison.reveal = Reveal::parse(options.reveal);
@@ -121,23 +118,35 @@ void evaluate(const EvaluateOptions& options, const CLI::App& command, Ranks& ra
   if (!options.believed.empty() && comparison.policies == kOnlineLadder) {
     comparison.policies.emplace_back(kBelievingPolicy);
   }
-  options.share.share();  // throws Error on a bad one
+  return comparison;
+}
+
+// The worlds, with the families and old maps that a comparison has of them.
+std::vector<World> load_arenas(const EvaluateOptions& options, ComparisonOptions& comparison) {
   std::vector<World> worlds;
   for (const std::string& maps : options.maps) {
     const std::vector<World> more = load_worlds({maps}, options.reading);
     worlds.insert(worlds.end(), more.begin(), more.end());
     if (!comparison.reveal.all()) comparison.families.resize(worlds.size(), maps);
   }
-  if (!options.believed.empty()) {
-    const std::vector<World> old = load_worlds(options.believed, options.reading);
-    if (old.size() != worlds.size()) {
-      throw Error({.what = "bad number of believed maps",
-                   .expected = std::to_string(worlds.size()),
-                   .got = std::to_string(old.size())});
-    }
-    for (std::size_t i = 0; i < old.size(); ++i) comparison.believed.push_back(believe(old[i], worlds[i]));
+  if (options.believed.empty()) return worlds;
+  const std::vector<World> old = load_worlds(options.believed, options.reading);
+  if (old.size() != worlds.size()) {
+    throw Error({.what = "bad number of believed maps",
+                 .expected = std::to_string(worlds.size()),
+                 .got = std::to_string(old.size())});
   }
+  for (std::size_t i = 0; i < old.size(); ++i) comparison.believed.push_back(believe(old[i], worlds[i]));
+  return worlds;
+}
+
+void evaluate(const EvaluateOptions& options, const CLI::App& command, Ranks& ranks) {
   const TaskWorkers workers{.ranks = ranks, .share = options.share.share()};
+  if (options.out.empty() && !workers.share.all()) {
+    throw Error({.what = "shares meet in a folder", .expected = "--out FOLDER with --task and --merge"});
+  }
+  ComparisonOptions comparison = comparison_of(options);
+  const std::vector<World> worlds = load_arenas(options, comparison);
   std::optional<TaskFolder> folder;
   if (!options.out.empty() || !ranks.alone()) {
     const Json origin = origin_of(options, comparison.policies, command);
@@ -148,9 +157,7 @@ void evaluate(const EvaluateOptions& options, const CLI::App& command, Ranks& ra
     }
   }
   const auto result = compare(worlds, comparison, workers, folder ? &*folder : nullptr);
-  if (!options.share.task.empty()) {
-    return print_text(fmt::format("Share {} of {} is done\n", workers.share.index + 1, workers.share.count));
-  }
+  if (!options.share.task.empty()) return print_share_done(workers.share);
   if (!result) {
     throw Error({.what = "results are lacking", .expected = "all shares of them done by --task", .where = options.out});
   }
@@ -160,6 +167,38 @@ void evaluate(const EvaluateOptions& options, const CLI::App& command, Ranks& ra
     print_text(format_comparison(*result));
   }
   if (folder) require_none_left_out(*folder);
+}
+
+// Those of maps that are not known, and what counts.
+void add_unknown_options(CLI::App& command, EvaluateOptions& options) {
+  CLI::Option* const reveal = add_text_option(command, "--reveal", options.reveal, "R",
+                                              "What is known of a map: all of it, or what visits show, edges, radius:R "
+                                              "or sight:R, as of explore; then a table by "
+                                              "what --maps names");
+  reveal->capture_default_str();
+  command.add_option("--score", options.score, "What counts of unknown maps: nodes visited, or nodes seen")
+      ->check(CLI::IsMember({"visited", "seen"}))
+      ->needs(reveal)
+      ->capture_default_str();
+  add_cover_options(command, options.cover);
+  command
+      .add_option("--believed", options.believed,
+                  "Old maps for the policies that plan: as of --maps, as many and in the same order")
+      ->needs(reveal)
+      ->type_name("OLD");
+  command
+      .add_option("--until", options.until,
+                  "Instead of a budget: covered, until nothing is left that is known; costs are compared then")
+      ->check(CLI::IsMember({"covered"}))
+      ->excludes(command.get_option("--budget"));
+  command
+      .add_option(
+          "--price", options.comparison.price_s,
+          "The price of ignorance where the optimum is not computed, of maps of more than 25 nodes and of costs: "
+          "seconds that search has for each walk that knows the map")
+      ->check(CLI::PositiveNumber)
+      ->needs(reveal)
+      ->type_name("S");
 }
 
 }  // namespace
@@ -188,34 +227,7 @@ void add_evaluate_command(CLI::App& app, Ranks& ranks) {
   command.add_flag("--all-starts", options->comparison.all_starts, "Instead: one episode from every valid node")
       ->excludes(episodes)
       ->excludes(start);
-  CLI::Option* const reveal = add_text_option(command, "--reveal", options->reveal, "R",
-                                              "What is known of a map: all of it, or what visits show, edges, radius:R "
-                                              "or sight:R, as of explore; then a table by "
-                                              "what --maps names");
-  reveal->capture_default_str();
-  command.add_option("--score", options->score, "What counts of unknown maps: nodes visited, or nodes seen")
-      ->check(CLI::IsMember({"visited", "seen"}))
-      ->needs(reveal)
-      ->capture_default_str();
-  add_cover_options(command, options->cover);
-  command
-      .add_option("--believed", options->believed,
-                  "Old maps for the policies that plan: as of --maps, as many and in the same order")
-      ->needs(reveal)
-      ->type_name("OLD");
-  command
-      .add_option("--until", options->until,
-                  "Instead of a budget: covered, until nothing is left that is known; costs are compared then")
-      ->check(CLI::IsMember({"covered"}))
-      ->excludes(command.get_option("--budget"));
-  command
-      .add_option(
-          "--price", options->comparison.price_s,
-          "The price of ignorance where the optimum is not computed, of maps of more than 25 nodes and of costs: "
-          "seconds that search has for each walk that knows the map")
-      ->check(CLI::PositiveNumber)
-      ->needs(reveal)
-      ->type_name("S");
+  add_unknown_options(command, *options);
   add_seed_option(command, options->comparison.seed, "For the starts and for random policies");
   add_text_option(command, "--out", options->out, "FOLDER",
                   "Keep each result in this folder: the same command again computes what is missing");

@@ -220,33 +220,43 @@ Json summarise_plans(const std::vector<PlannedMap>& maps, const std::filesystem:
   return summary;
 }
 
-void plan_many(const PlanOptions& options, const CLI::App& command, Ranks& ranks) {
+bool is_planned(const PlannedMap& map, const std::filesystem::path& folder) {
+  std::error_code error;
+  return std::filesystem::exists(folder / (map.name + ".json"), error);
+}
+
+// Makes sure that the plans in the folder are of the same options and maps.
+void claim_plans(const PlanOptions& options, const std::vector<PlannedMap>& maps, const CLI::App& command,
+                 Ranks& ranks) {
   const std::filesystem::path folder = options.out.front();
-  const TaskWorkers workers{.ranks = ranks, .share = options.share.share()};
-  const std::vector<PlannedMap> maps = planned_maps(options.map);
   std::vector<std::string> others = {options.request.policy};
   if (!options.believed.empty()) others.push_back(options.believed);
   const std::vector<std::string> free = {"--out",          "--task", "--merge", "--threads",
                                          "--memory-limit", "--json", "--walk"};
   const Json origin = {{"options", given_options(command, free)}, {"files", checksums_of({options.map}, others)}};
   ranks.require_same("files", origin.dump(-1, ' ', false, Json::error_handler_t::replace));
-  const auto is_planned = [&](const PlannedMap& map) {
-    std::error_code error;
-    return std::filesystem::exists(folder / (map.name + ".json"), error);
-  };
-  if (ranks.is_first() && std::ranges::any_of(maps, is_planned) && !std::filesystem::exists(folder / ".plans.json")) {
+  ranks.on_first([&] {
+    const bool any = std::ranges::any_of(maps, [&](const PlannedMap& map) { return is_planned(map, folder); });
+    if (!any || std::filesystem::exists(folder / ".plans.json")) return;
     throw Error(
         {.what = "the folder holds files of the plans' names", .expected = "a new one", .where = folder.string()});
-  }
+  });
   claim_folder(folder, ".plans", origin, ranks);
+}
+
+// Plans what is missing; gives whether all of the share is done.
+bool plan_missing(const PlanOptions& options, const std::vector<PlannedMap>& maps, const TaskWorkers& workers) {
+  const std::filesystem::path folder = options.out.front();
   std::vector<TaskFolder::Task> tasks;
-  for (const PlannedMap& map : maps) tasks.push_back({.name = map.name, .done = is_planned(map)});
-  catch_stop_signals();
+  std::int64_t to_do = 0;
+  for (const PlannedMap& map : maps) {
+    const bool own = workers.share.has(static_cast<int>(tasks.size()));
+    tasks.push_back({.name = map.name, .done = is_planned(map, folder)});
+    if (own && !tasks.back().done) ++to_do;
+  }
   ProgressDisplay display("map");
   std::mutex mutex;
   std::int64_t done = 0;
-  std::int64_t to_do = 0;
-  for (std::size_t i = 0; i < tasks.size(); ++i) to_do += !tasks[i].done && workers.share.has(static_cast<int>(i));
   const auto work = [&](int task) {
     const auto [world, asked, request] = question_of(options, maps[task].source);
     const Answer answer = answer_task(world, asked, request, Clock(options.time_limit_s, &stop_flag()));
@@ -257,26 +267,31 @@ void plan_many(const PlanOptions& options, const CLI::App& command, Ranks& ranks
     display.show(done, to_do, maps[task].name, done == to_do);
     return true;
   };
+  return TaskFolder(folder).run(
+      tasks, workers, [] { return stop_flag().load(); }, work);
+}
+
+void plan_many(const PlanOptions& options, const CLI::App& command, Ranks& ranks) {
+  const TaskWorkers workers{.ranks = ranks, .share = options.share.share()};
+  const std::vector<PlannedMap> maps = planned_maps(options.map);
+  claim_plans(options, maps, command, ranks);
+  catch_stop_signals();
   std::exception_ptr failure;
   bool finished = true;
   try {
-    finished = TaskFolder(folder).run(
-        tasks, workers, [] { return stop_flag().load(); }, work);
+    finished = plan_missing(options, maps, workers);
   } catch (...) {
     failure = std::current_exception();
   }
-  display.finish();
-  Json summary;
-  const bool whole = workers.share.all() || options.share.merge;
-  if (whole && ranks.is_first()) summary = summarise_plans(maps, folder);
+  const std::filesystem::path folder = options.out.front();
+  const bool whole = options.share.task.empty();
+  const Json summary = whole && ranks.is_first() ? summarise_plans(maps, folder) : Json();
   if (failure) std::rethrow_exception(failure);
   if (!finished) {
     print_diagnostic("Stopped; the plans made so far are kept. To go on: the same command\n");
     throw CLI::RuntimeError(128 + stop_signal());
   }
-  if (!whole) {
-    return print_text(fmt::format("Share {} of {} is done\n", workers.share.index + 1, workers.share.count));
-  }
+  if (!whole) return print_share_done(workers.share);
   if (!ranks.is_first()) return;
   if (options.json) {
     print_json({{"plans", summary}});

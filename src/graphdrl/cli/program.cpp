@@ -178,6 +178,10 @@ void add_share_options(CLI::App& command, ShareText& text) {
   command.add_flag("--merge", text.merge, "Do no task: put together what others did with --task")->excludes(task);
 }
 
+void print_share_done(const TaskShare& share) {
+  print_text(fmt::format("Share {} of {} is done\n", share.index + 1, share.count));
+}
+
 std::string given_options(const CLI::App& command, const std::vector<std::string>& but_for) {
   std::string given;
   for (const CLI::Option* const option : command.get_options()) {

@@ -66,6 +66,9 @@ struct ShareText {
   TaskShare share() const { return merge ? TaskShare::none() : task.empty() ? TaskShare() : parse_task_share(task); }
 };
 
+// Says that a share of --task is done.
+void print_share_done(const TaskShare& share);
+
 // Adds --task and --merge.
 void add_share_options(CLI::App& command, ShareText& text);
 

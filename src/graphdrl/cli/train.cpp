@@ -230,7 +230,7 @@ void train(SeedRuns& seeds, const LearnerSource& learners, const TaskWorkers& wo
   display.finish();
   if (!finished) leave_stopped(fmt::format("{} of {} seeds", seeds_done, count), seeds.folder().string());
   if (workers.share.all()) return report_seeds(seeds, json);
-  print_text(fmt::format("Share {} of {} is done\n", workers.share.index + 1, workers.share.count));
+  print_share_done(workers.share);
 }
 
 // The parser of the arguments after `train`, and what they say.

@@ -123,7 +123,6 @@ int TaskFolder::left_out_count() const {
 
 // Gives what is to be said.
 std::string TaskFolder::remember(const std::string& name, const std::exception& error) const {
-  if (path_.empty()) return fmt::format("{} failed: {}", name, error.what());
   const TaskFailure failure{.times = failure_of(name).value_or(TaskFailure()).times + 1, .what = error.what()};
   prepare_folder(file_of(name).parent_path());
   write_checked_json(file_of(name), {{kTimesKey, failure.times}, {kErrorKey, failure.what}});
@@ -182,7 +181,7 @@ bool TaskFolder::run(const std::vector<Task>& tasks, const TaskWorkers& workers,
           failures.offer(task);
         } catch (const std::exception& error) {
           failures.offer(task);
-          failures.say(remember(tasks[task].name, error));
+          if (!path_.empty()) failures.say(remember(tasks[task].name, error));
         }
       }
     });
@@ -195,9 +194,9 @@ bool TaskFolder::run(const std::vector<Task>& tasks, const TaskWorkers& workers,
 std::optional<std::vector<nlohmann::ordered_json>> results_of(
     const std::vector<std::string>& names, const TaskFolder* folder, const TaskWorkers& workers,
     const std::function<nlohmann::ordered_json(int task)>& compute) {
-  using Json = nlohmann::ordered_json;
+  using Result = nlohmann::ordered_json;
   constexpr const char* kResultKey = "result";
-  std::vector<Json> results(names.size());
+  std::vector<Result> results(names.size());
   const TaskFolder nowhere("");
   const auto file_of = [&](std::size_t task) { return folder->path() / (names[task] + ".json"); };
   std::vector<TaskFolder::Task> tasks;
@@ -210,7 +209,7 @@ std::optional<std::vector<nlohmann::ordered_json>> results_of(
   ByteWriter own;
   const auto never = [] { return false; };
   (folder == nullptr ? nowhere : *folder).run(tasks, workers, never, [&](int task) {
-    const Json result = compute(task);
+    const Result result = compute(task);
     if (folder != nullptr) write_checked_json(file_of(task), {{kResultKey, result}});
     const std::lock_guard lock(mutex);
     own.put(task);
@@ -221,7 +220,7 @@ std::optional<std::vector<nlohmann::ordered_json>> results_of(
   for (const std::string& of_rank : workers.ranks.gather(own.bytes())) {
     for (ByteReader heard(of_rank); !heard.at_end();) {
       const int task = heard.get<int>();
-      results[task] = Json::parse(heard.get_text());
+      results[task] = Result::parse(heard.get_text());
       is_here[task] = 1;
     }
   }

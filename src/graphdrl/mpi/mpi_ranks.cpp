@@ -173,7 +173,7 @@ std::vector<MpiRanks::Header> MpiRanks::tell(const Header& own) {
 }
 
 std::vector<MpiRanks::Header> MpiRanks::tell_all_at_work(const Header& own) {
-  const std::vector<Header> all = tell(own);
+  std::vector<Header> all = tell(own);
   for (int rank = 0; rank < size_; ++rank) {
     if (all[rank].call == Header::Call::kSettle) throw RankLost("rank " + std::to_string(rank) + " has left");
     if (all[rank].call != own.call) throw std::logic_error("ranks do different things at once");
@@ -238,6 +238,7 @@ std::vector<MpiRanks::Outcome> MpiRanks::settle(const Outcome& own) {
     all = tell({Header::Call::kSettle, own.status, std::ssize(own.complaint)});
   } while (!std::ranges::all_of(all, settles));
   std::vector<Outcome> outcomes;
+  outcomes.reserve(all.size());
   const std::vector<std::string> complaints = exchange(all, own.complaint);
   for (int rank = 0; rank < size_; ++rank) outcomes.push_back({all[rank].flag, complaints[rank]});
   return outcomes;
