@@ -11,8 +11,8 @@
 namespace graphdrl {
 
 // A minibatch is cut into so many shards, whose gradients are summed in a fixed order: a training's bytes depend
-// neither on threads nor on ranks. More would let more of them help; each costs a rank that has several some 2 % (64
-// lessons).
+// neither on threads nor on ranks. Two rounds of the explorer take one thread as long with them as without (43.1
+// and 44.6 s).
 inline constexpr int kShards = 16;
 
 // Orders samples so that all shards cost about the same: from the most costly one on they go to one shard after the

@@ -103,7 +103,7 @@ class RoundRecipe : public Recipe {
   void restore_round(const Checkpoint& checkpoint, std::int64_t remembered, const TrainingProgress& progress);
 
  private:
-  static constexpr int kWalksPerTask = 4;  // short walks take two milliseconds, and asking for more of them 0.2
+  static constexpr int kWalksPerTask = 4;  // walks of unknown maps take some 3 ms; asking takes a part of one
 
   std::vector<int> largest_first(std::int64_t round, const std::vector<WorldSpec>& worlds) const;
   std::uint64_t seed_of(std::int64_t round, int walk) const;
