@@ -33,10 +33,6 @@ class OneRank final : public Ranks {
   std::unique_ptr<TaskQueue> hand_out(int count) override { return std::make_unique<CountedTasks>(count); }
 };
 
-void add(std::span<const float> term, std::span<float> sum) {
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += term[i];
-}
-
 }  // namespace
 
 Ranks& one_rank() {
@@ -69,50 +65,48 @@ int ShardedSum::owner_of(int first, int count) const {
   return -1;
 }
 
+// Adds up shards along the tree. leaf(first, count, into): sets `into` to the sum of these shards and gives true, or
+// gives false where its halves are to be added.
+template <typename Leaf>
+void ShardedSum::add_up(int first, int count, const Leaf& leaf, std::span<float> into) {
+  if (leaf(first, count, into)) return;
+  add_up(first, count / 2, leaf, into);
+  std::vector<float> right(into.size());
+  add_up(first + count / 2, count / 2, leaf, right);
+  for (std::size_t i = 0; i < into.size(); ++i) into[i] += right[i];
+}
+
 void ShardedSum::sum(std::span<const std::vector<float>> own, std::span<float> sum) {
-  const std::size_t size = sum.size();
-  // The sum of shards that are this rank's.
-  const auto own_sum = [&](const auto& again, int first, int count, std::span<float> into) -> void {
-    if (count == 1) {
-      std::ranges::copy(own[first - first_shard()], into.begin());
-      return;
-    }
-    again(again, first, count / 2, into);
-    std::vector<float> right(size);
-    again(again, first + count / 2, count / 2, right);
-    add(right, into);
+  const auto own_shard = [&](int first, int count, std::span<float> into) {
+    if (count == 1) std::ranges::copy(own[first - first_shard()], into.begin());
+    return count == 1;
   };
-  if (ranks_.alone()) return own_sum(own_sum, 0, shards_, sum);
+  if (ranks_.alone()) return add_up(0, shards_, own_shard, sum);
 
   // Each rank sends the sums of the largest subtrees that are its own, from left to right.
   std::string sent;
-  std::vector<float> subtree(size);
-  const auto send = [&](const auto& again, int first, int count) -> void {
+  std::vector<float> subtree(sum.size());
+  const auto send = [&](int first, int count, std::span<float>) {
     const int owner = owner_of(first, count);
     if (owner == ranks_.rank()) {
-      own_sum(own_sum, first, count, subtree);
-      sent.append(reinterpret_cast<const char*>(subtree.data()), size * sizeof(float));
-    } else if (owner < 0) {
-      again(again, first, count / 2);
-      again(again, first + count / 2, count / 2);
+      add_up(first, count, own_shard, subtree);
+      sent.append(reinterpret_cast<const char*>(subtree.data()), sum.size_bytes());
     }
+    return owner >= 0;
   };
-  send(send, 0, shards_);
+  add_up(0, shards_, send, sum);
   const std::vector<std::string> received = ranks_.gather(sent);
   std::vector<std::size_t> read(received.size());  // bytes of each
-  const auto join = [&](const auto& again, int first, int count, std::span<float> into) -> void {
-    const int owner = owner_of(first, count);
-    if (owner >= 0) {
-      std::memcpy(into.data(), received[owner].data() + read[owner], size * sizeof(float));
-      read[owner] += size * sizeof(float);
-      return;
-    }
-    again(again, first, count / 2, into);
-    std::vector<float> right(size);
-    again(again, first + count / 2, count / 2, right);
-    add(right, into);
-  };
-  join(join, 0, shards_, sum);
+  add_up(
+      0, shards_,
+      [&](int first, int count, std::span<float> into) {
+        const int owner = owner_of(first, count);
+        if (owner < 0) return false;
+        std::memcpy(into.data(), received[owner].data() + read[owner], into.size_bytes());
+        read[owner] += into.size_bytes();
+        return true;
+      },
+      sum);
 }
 
 }  // namespace graphdrl

@@ -74,6 +74,8 @@ class ShardedSum {
  private:
   int first_of(int rank) const { return static_cast<int>(std::int64_t{shards_} * rank / ranks_.size()); }
   int owner_of(int first, int count) const;
+  template <typename Leaf>
+  void add_up(int first, int count, const Leaf& leaf, std::span<float> into);
 
   Ranks& ranks_;
   int shards_;

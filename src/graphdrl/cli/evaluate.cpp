@@ -152,7 +152,7 @@ void evaluate(const EvaluateOptions& options, const CLI::App& command, Ranks& ra
     const Json origin = origin_of(options, comparison.policies, command);
     ranks.require_same("files", origin.dump(-1, ' ', false, Json::error_handler_t::replace));
     if (!options.out.empty()) {
-      claim_folder(options.out, "evaluation", origin, ranks);
+      claim_folder(std::filesystem::path(options.out) / "evaluation.json", origin, ranks);
       folder.emplace(std::filesystem::path(options.out) / "results");
     }
   }

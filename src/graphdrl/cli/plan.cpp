@@ -2,23 +2,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
-#include <set>
 
 #include "graphdrl/base/error.h"
 #include "graphdrl/cli/commands.h"
 #include "graphdrl/cli/live.h"
 #include "graphdrl/cli/machine.h"
+#include "graphdrl/cli/plan_folder.h"
 #include "graphdrl/cli/program.h"
 #include "graphdrl/cli/stop_signals.h"
 #include "graphdrl/env/load_worlds.h"
-#include "graphdrl/io/file.h"
-#include "graphdrl/io/json.h"
-#include "graphdrl/io/map_source.h"
 #include "graphdrl/io/text.h"
 #include "graphdrl/live/edge_exploration.h"
 #include "graphdrl/planners/registry.h"
@@ -147,169 +141,26 @@ void plan_one(const PlanOptions& options) {
   if (stop_signal() != 0) throw CLI::RuntimeError(128 + stop_signal());
 }
 
-// Whether a plan of each of many maps is asked for, into a folder.
-bool asks_for_many(const PlanOptions& options) {
-  std::error_code error;
-  const bool many = options.map == "paper" || std::filesystem::is_directory(options.map, error);
-  if (!many || options.out.size() != 1) return false;
-  const std::filesystem::path out = options.out.front();
-  return std::filesystem::is_directory(out, error) || !out.has_extension();
-}
-
-// A map of many, and where its plan goes.
-struct PlannedMap {
-  std::string source;
-  std::string name;  // of the file, without its ending; whole where several would have the same
-};
-
-std::vector<PlannedMap> planned_maps(const std::string& source) {
-  std::vector<PlannedMap> maps;
-  std::map<std::string, int> uses;
-  for (const std::string& one : map_sources(source)) {
-    std::string name = std::filesystem::path(one).filename().stem().string();
-    if (source == "paper") std::ranges::replace(name, ':', '-');
-    ++uses[name];
-    maps.push_back({.source = one, .name = std::move(name)});
-  }
-  std::set<std::string> names;
-  for (PlannedMap& map : maps) {
-    if (uses[map.name] > 1) map.name = std::filesystem::path(map.source).filename().string();
-    if (names.insert(map.name).second) continue;
-    throw Error({.what = "two plans would have the name " + map.name, .where = map.source});
-  }
-  return maps;
-}
-
-// A line of the summary; nothing where the plan is lacking.
-std::optional<Json> summary_of(const PlannedMap& map, const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) return std::nullopt;
-  const nlohmann::json plan = parse_json(read_file(file), file.string());
-  Json line = {{"map", map.name}};
-  for (const char* const key :
-       {"policy", "budget", "visited", "coverage", "prize", "cost", "upper_bound", "gap", "optimal"}) {
-    line[key] = plan.value(key, nlohmann::json());
-  }
-  return line;
-}
-
-std::string to_csv(const Json& summary) {
-  std::string text;
-  for (const Json& line : summary) {
-    if (text.empty()) {
-      std::vector<std::string> keys;
-      for (const auto& item : line.items()) keys.push_back(item.key());
-      text += fmt::format("{}\n", fmt::join(keys, ","));
-    }
-    std::vector<std::string> fields;
-    for (const Json& value : line) {
-      fields.push_back(value.is_null() ? "" : value.is_string() ? csv_field(value.get<std::string>()) : value.dump());
-    }
-    text += fmt::format("{}\n", fmt::join(fields, ","));
-  }
-  return text;
-}
-
-// Writes FOLDER/summary.csv of the plans that are there, and gives it; says how many are not.
-Json summarise_plans(const std::vector<PlannedMap>& maps, const std::filesystem::path& folder) {
-  Json summary = Json::array();
-  for (const PlannedMap& map : maps) {
-    if (auto line = summary_of(map, folder / (map.name + ".json"))) summary.push_back(std::move(*line));
-  }
-  write_file(folder / "summary.csv", to_csv(summary));
-  return summary;
-}
-
-bool is_planned(const PlannedMap& map, const std::filesystem::path& folder) {
-  std::error_code error;
-  return std::filesystem::exists(folder / (map.name + ".json"), error);
-}
-
-// Makes sure that the plans in the folder are of the same options and maps.
-void claim_plans(const PlanOptions& options, const std::vector<PlannedMap>& maps, const CLI::App& command,
-                 Ranks& ranks) {
-  const std::filesystem::path folder = options.out.front();
-  std::vector<std::string> others = {options.request.policy};
-  if (!options.believed.empty()) others.push_back(options.believed);
-  const std::vector<std::string> free = {"--out",          "--task", "--merge", "--threads",
-                                         "--memory-limit", "--json", "--walk"};
-  const Json origin = {{"options", given_options(command, free)}, {"files", checksums_of({options.map}, others)}};
-  ranks.require_same("files", origin.dump(-1, ' ', false, Json::error_handler_t::replace));
-  ranks.on_first([&] {
-    const bool any = std::ranges::any_of(maps, [&](const PlannedMap& map) { return is_planned(map, folder); });
-    if (!any || std::filesystem::exists(folder / ".plans.json")) return;
-    throw Error(
-        {.what = "the folder holds files of the plans' names", .expected = "a new one", .where = folder.string()});
-  });
-  claim_folder(folder, ".plans", origin, ranks);
-}
-
-// Plans what is missing; gives whether all of the share is done.
-bool plan_missing(const PlanOptions& options, const std::vector<PlannedMap>& maps, const TaskWorkers& workers) {
-  const std::filesystem::path folder = options.out.front();
-  std::vector<TaskFolder::Task> tasks;
-  std::int64_t to_do = 0;
-  for (const PlannedMap& map : maps) {
-    const bool own = workers.share.has(static_cast<int>(tasks.size()));
-    tasks.push_back({.name = map.name, .done = is_planned(map, folder)});
-    if (own && !tasks.back().done) ++to_do;
-  }
-  ProgressDisplay display("map");
-  std::mutex mutex;
-  std::int64_t done = 0;
-  const auto work = [&](int task) {
-    const auto [world, asked, request] = question_of(options, maps[task].source);
-    const Answer answer = answer_task(world, asked, request, Clock(options.time_limit_s, &stop_flag()));
-    if (stop_flag().load()) return false;  // it may be worse than with the time that it should have
-    write_plan(answer, (folder / (maps[task].name + ".json")).string());
-    const std::lock_guard lock(mutex);
-    ++done;
-    display.show(done, to_do, maps[task].name, done == to_do);
-    return true;
-  };
-  return TaskFolder(folder).run(
-      tasks, workers, [] { return stop_flag().load(); }, work);
-}
-
-void plan_many(const PlanOptions& options, const CLI::App& command, Ranks& ranks) {
-  const TaskWorkers workers{.ranks = ranks, .share = options.share.share()};
-  const std::vector<PlannedMap> maps = planned_maps(options.map);
-  claim_plans(options, maps, command, ranks);
-  catch_stop_signals();
-  std::exception_ptr failure;
-  bool finished = true;
-  try {
-    finished = plan_missing(options, maps, workers);
-  } catch (...) {
-    failure = std::current_exception();
-  }
-  const std::filesystem::path folder = options.out.front();
-  const bool whole = options.share.task.empty();
-  const Json summary = whole && ranks.is_first() ? summarise_plans(maps, folder) : Json();
-  if (failure) std::rethrow_exception(failure);
-  if (!finished) {
-    print_diagnostic("Stopped; the plans made so far are kept. To go on: the same command\n");
-    throw CLI::RuntimeError(128 + stop_signal());
-  }
-  if (!whole) return print_share_done(workers.share);
-  if (!ranks.is_first()) return;
-  if (options.json) {
-    print_json({{"plans", summary}});
-  } else {
-    print_text(fmt::format("Planned {} of {} maps; all in one table: {}\n", summary.size(), maps.size(),
-                           escaped((folder / "summary.csv").string())));
-  }
-  if (summary.size() < maps.size()) throw CLI::RuntimeError(kExitBadInput);
-}
-
 void plan(const PlanOptions& options, const CLI::App& command, Ranks& ranks) {
-  const bool many = asks_for_many(options);
+  const bool many = options.out.size() == 1 && asks_for_folder(options.map, options.out.front());
   ranks.require_same("maps", many ? "a folder" : "one");
-  if (many) return plan_many(options, command, ranks);
-  if (!options.share.task.empty() || options.share.merge) {
-    throw Error({.what = "one plan has no shares", .expected = "a folder of maps and --out FOLDER"});
+  if (!many) {
+    if (!options.share.share().all()) {
+      throw Error({.what = "one plan has no shares", .expected = "a folder of maps and --out FOLDER"});
+    }
+    return ranks.on_first([&] { plan_one(options); });
   }
-  ranks.on_first([&] { plan_one(options); });
+  std::vector<std::string> files = {options.request.policy};
+  if (!options.believed.empty()) files.push_back(options.believed);
+  const FolderOfPlans plans{.maps = options.map,
+                            .folder = options.out.front(),
+                            .files = files,
+                            .workers = {.ranks = ranks, .share = options.share.share()},
+                            .json = options.json};
+  plan_folder(plans, command, [&](const std::string& map) {
+    const auto [world, task, request] = question_of(options, map);
+    return answer_task(world, task, request, Clock(options.time_limit_s, &stop_flag()));
+  });
 }
 
 // Those of both commands.

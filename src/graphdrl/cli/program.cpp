@@ -20,7 +20,6 @@
 #include "graphdrl/base/parallel.h"
 #include "graphdrl/base/ranks.h"
 #include "graphdrl/cli/machine.h"
-#include "graphdrl/io/checked_json.h"
 #include "graphdrl/io/checksum.h"
 #include "graphdrl/io/file.h"
 #include "graphdrl/io/map_source.h"
@@ -206,19 +205,6 @@ Json checksums_of(const std::vector<std::string>& maps, const std::vector<std::s
 
 void require_none_left_out(const TaskFolder& folder) {
   if (folder.left_out_count() > 0) throw CLI::RuntimeError(kExitBadInput);
-}
-
-void claim_folder(const std::filesystem::path& folder, const std::string& name, const Json& origin, Ranks& ranks) {
-  const std::filesystem::path file = folder / (name + ".json");
-  ranks.on_first([&] {
-    prepare_folder(folder);
-    if (!std::filesystem::exists(file)) return write_checked_json(file, origin);
-    if (read_checked_json(file) == origin) return;
-    throw Error({.what = "the folder holds results of other options or files",
-                 .expected = "a new folder, or the same command again",
-                 .where = folder.string()});
-  });
-  ranks.require_same("files in " + folder.string(), std::filesystem::exists(file) ? "seen" : "");
 }
 
 void add_cover_options(CLI::App& command, CoverText& text) {

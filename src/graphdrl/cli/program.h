@@ -81,10 +81,6 @@ Json checksums_of(const std::vector<std::string>& maps, const std::vector<std::s
 // Ends with status 2 where tasks of a folder were left out, which were named.
 void require_none_left_out(const TaskFolder& folder);
 
-// A folder of results that all come from the same options and files: notes what they come from in FOLDER/NAME.json, or
-// throws Error where it holds results of others. Collective: the first rank writes.
-void claim_folder(const std::filesystem::path& folder, const std::string& name, const Json& origin, Ranks& ranks);
-
 // Adds --cover and --reset-cost.
 void add_cover_options(CLI::App& command, CoverText& text);
 

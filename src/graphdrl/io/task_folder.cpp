@@ -191,6 +191,33 @@ bool TaskFolder::run(const std::vector<Task>& tasks, const TaskWorkers& workers,
   return !ranks.any(stopped);
 }
 
+void claim_folder(const std::filesystem::path& file, const nlohmann::ordered_json& origin, Ranks& ranks,
+                  const std::function<void()>& require_free) {
+  const std::filesystem::path folder = file.parent_path();
+  const auto is_claimed = [&] {
+    std::error_code error;
+    return std::filesystem::exists(file, error);
+  };
+  ranks.on_first([&] {
+    if (!is_claimed()) {
+      try {
+        require_free();
+        prepare_folder(folder);
+        return write_checked_json(file, origin);
+      } catch (const MachineError&) {
+        throw;
+      } catch (const Error&) {
+        if (!is_claimed()) throw;  // else another process has begun in the meantime
+      }
+    }
+    if (read_checked_json(file) == origin) return;
+    throw Error({.what = "the folder holds results of other options or files",
+                 .expected = "a new folder, or the command that it was begun with (train and tune: or --resume)",
+                 .where = folder.string()});
+  });
+  ranks.require_same("files in " + folder.string(), is_claimed() ? "seen" : "");
+}
+
 std::optional<std::vector<nlohmann::ordered_json>> results_of(
     const std::vector<std::string>& names, const TaskFolder* folder, const TaskWorkers& workers,
     const std::function<nlohmann::ordered_json(int task)>& compute) {

@@ -73,6 +73,13 @@ class TaskFolder {
   std::filesystem::path path_;
 };
 
+// Makes a folder that of one origin, such as options and checksums of files: notes it in a file there. `require_free`
+// is called first where the file is not there yet. Throws Error where it names another origin, and unless all ranks see
+// it. Collective: the first rank writes.
+void claim_folder(
+    const std::filesystem::path& file, const nlohmann::ordered_json& origin, Ranks& ranks,
+    const std::function<void()>& require_free = [] {});
+
 // Computes what tasks give on all threads of all ranks, and gives it on all of them, by task. Where there is a folder
 // each result is kept, as FOLDER/NAME.json, and computed once; what was left out is null.
 // Nothing where tasks of other shares are lacking. Throws as TaskFolder::run(). Collective.

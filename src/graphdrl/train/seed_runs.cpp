@@ -101,28 +101,13 @@ SeedRuns SeedRuns::start(const TrainOptions& options, std::vector<std::uint64_t>
                          const std::filesystem::path& folder, const LearnerSource& learners, Ranks& ranks) {
   const SeedsFile file{.seeds = std::move(seeds), .options = options};
   Trainer::check(options, learners);
-  ranks.on_first([&] {
-    Json json = config_json(options);
-    json.erase("seed");
-    json[kSeedsKey] = file.seeds;
-    const auto require_same_runs = [&] {
-      if (read_checked_json(seeds_file(folder)) == json) return;
-      throw Error({.what = "the folder holds other runs already",
-                   .expected = "a new folder, or --resume to go on with them",
-                   .where = folder.string()});
-    };
-    if (are_in(folder)) return require_same_runs();
-    try {
-      RunDirectory(folder).require_new();
-      for (const PlannedRun& run : planned_runs(file, folder)) run.directory.require_new();
-    } catch (const Error&) {
-      if (are_in(folder)) return require_same_runs();  // another process has begun in the meantime
-      throw;
-    }
-    prepare_folder(folder);
-    write_checked_json(seeds_file(folder), json);
+  Json json = config_json(options);
+  json.erase("seed");
+  json[kSeedsKey] = file.seeds;
+  claim_folder(seeds_file(folder), json, ranks, [&] {
+    RunDirectory(folder).require_new();
+    for (const PlannedRun& run : planned_runs(file, folder)) run.directory.require_new();
   });
-  ranks.require_same("files in " + folder.string(), are_in(folder) ? "seen" : "");
   return {file, folder};
 }
 

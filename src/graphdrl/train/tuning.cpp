@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "graphdrl/base/bytes.h"
 #include "graphdrl/base/error.h"
 #include "graphdrl/env/load_worlds.h"
 #include "graphdrl/env/world_families.h"
@@ -150,19 +150,8 @@ Tuning Tuning::start(const TuneOptions& options, std::filesystem::path folder, c
                      Ranks& ranks) {
   Trainer::check(options_of(options, Setting::object(), ""), learners);  // refuses what all would
   std::vector<Setting> settings = draw_settings(options.rounds.front().settings, options.seed);
-  ranks.on_first([&] {
-    const Json json = {{"options", to_json(options)}, {"settings", settings}};
-    if (!std::filesystem::exists(tune_file(folder))) {
-      prepare_folder(folder);
-      write_checked_json(tune_file(folder), json);
-    } else if (read_checked_json(tune_file(folder)) != json) {
-      throw Error({.what = "the folder holds another search already",
-                   .expected = "a new folder, or --resume to go on with it",
-                   .where = folder.string()});
-    }
-    write_maps(options, folder);
-  });
-  ranks.require_same("files in " + folder.string(), std::filesystem::exists(tune_file(folder)) ? "seen" : "");
+  claim_folder(tune_file(folder), {{"options", to_json(options)}, {"settings", settings}}, ranks);
+  ranks.on_first([&] { write_maps(options, folder); });
   return {options, std::move(settings), std::move(folder)};
 }
 
@@ -258,26 +247,20 @@ std::optional<RoundScores> Tuning::score(std::size_t round, const SideBySide& tr
   const std::vector<World> worlds = load_worlds({(folder_ / "maps" / "validation").string()});
   const auto seeds = static_cast<std::size_t>(options_.rounds[round].seeds);
   const std::vector<std::size_t> settings = settings_of(round);
-  std::vector<std::vector<double>> by_seed(settings.size());
-  ByteWriter own;
-  bool stopped = false;
-  const auto queue = ranks.hand_out(static_cast<int>(settings.size()));
-  while (const auto place = queue->next()) {
-    stopped = stopped || stop();
-    const std::size_t first = static_cast<std::size_t>(*place) * seeds;
-    bool whole = true;
-    for (std::size_t run = first; run < first + seeds; ++run) whole = whole && trainings.is_trained(run);
-    if (stopped || !whole) continue;
-    own.put(*place);
-    own.put_all<double>(scores_by_seed(std::span(trainings.runs()).subspan(first, seeds), worlds));
-  }
-  if (ranks.any(stopped)) return std::nullopt;
-  for (const std::string& of_rank : ranks.gather(own.bytes())) {
-    for (ByteReader heard(of_rank); !heard.at_end();) {
-      const int place = heard.get<int>();
-      by_seed[place] = heard.get_all<double>();
+  std::vector<std::string> names;
+  for (const std::size_t setting : settings) names.push_back(fmt::format("setting-{:02}", setting));
+  std::atomic<bool> stopped = false;
+  const auto results = results_of(names, nullptr, {.ranks = ranks}, [&](int place) -> Json {
+    if (stop()) stopped = true;
+    const std::size_t first = static_cast<std::size_t>(place) * seeds;
+    for (std::size_t run = first; run < first + seeds; ++run) {
+      if (stopped || !trainings.is_trained(run)) return Json::array();
     }
-  }
+    return scores_by_seed(std::span(trainings.runs()).subspan(first, seeds), worlds);
+  });
+  if (ranks.any(stopped)) return std::nullopt;
+  std::vector<std::vector<double>> by_seed;
+  for (const Json& of_setting : results.value()) by_seed.push_back(of_setting);
   if (by_seed.front().empty()) {
     throw Error({.what = "trainings by the paper's values failed: there is nothing to compare with",
                  .where = (folder_ / "failed").string()});
