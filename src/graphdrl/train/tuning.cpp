@@ -248,6 +248,7 @@ std::optional<RoundScores> Tuning::score(std::size_t round, const SideBySide& tr
   const auto seeds = static_cast<std::size_t>(options_.rounds[round].seeds);
   const std::vector<std::size_t> settings = settings_of(round);
   std::vector<std::string> names;
+  names.reserve(settings.size());
   for (const std::size_t setting : settings) names.push_back(fmt::format("setting-{:02}", setting));
   std::atomic<bool> stopped = false;
   const auto results = results_of(names, nullptr, {.ranks = ranks}, [&](int place) -> Json {
